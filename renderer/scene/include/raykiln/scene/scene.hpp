@@ -1,0 +1,65 @@
+// The scene: an immutable value, validated once by renderer/io. Knows no file format and no tree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "raykiln/math/ray.hpp"
+#include "raykiln/math/vec.hpp"
+
+namespace raykiln::render {
+
+inline constexpr std::uint32_t kNoNormal = 0xFFFFFFFFU;
+
+/// All triangles of the scene, in world space relative to Scene::origin, in metres.
+/// Counter-clockwise winding faces outwards. The triangle id is its index here.
+struct TriangleMesh {
+  std::vector<Vec3f> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;       ///< indices into positions
+  std::vector<std::uint32_t> material_ids;                   ///< one a triangle
+  std::vector<Vec3f> normals;                                ///< unit; empty when nothing has any
+  std::vector<std::array<std::uint32_t, 3>> corner_normals;  ///< empty, or one a triangle; kNoNormal
+};
+
+/// The seed's BSDF, section 3: f = diffuse [transparent a/(2 pi) + (1 - transparent) a/pi]
+///   + specular [transparent f_st + (1 - transparent) f_ph]; the RGB weights contain a.
+struct Material {
+  std::string name;
+  Rgb diffuse{0.0F};
+  Rgb specular{0.0F};
+  float transparent = 0.0F;  ///< [0, 1]: share that also transmits
+  double specular_exp = 1.0; ///< Phong exponent e >= 0
+  float index_of_refraction = 1.0F;  ///< of the side behind the geometric normal; vacuum in front
+  Rgb emission{0.0F};                ///< radiance, W sr^-1 m^-2, both sides
+};
+
+struct PointLight {
+  std::string name;
+  Vec3f position{0.0F};  ///< relative to Scene::origin
+  Rgb intensity{0.0F};   ///< W sr^-1
+};
+
+/// Pinhole. right, up, forward are orthonormal (right = forward x up); fov is the full vertical
+/// angle. Pixel (0, 0) is at the top left.
+struct Camera {
+  std::string name;
+  Vec3f eye{0.0F};  ///< relative to Scene::origin
+  Vec3f right{1.0F, 0.0F, 0.0F};
+  Vec3f up{0.0F, 1.0F, 0.0F};
+  Vec3f forward{0.0F, 0.0F, -1.0F};
+  float fov_y_rad = 0.7F;
+};
+
+struct Scene {
+  TriangleMesh mesh;
+  std::vector<Material> materials;
+  std::vector<PointLight> point_lights;
+  std::vector<Camera> cameras;  ///< never empty: a default one frames the bounds
+  Rgb background{0.0F};         ///< radiance of a ray that meets nothing
+  Vec3d origin{0.0};            ///< world position of the local (0, 0, 0): positions were re-centred
+  Bounds3f bounds;              ///< of mesh.positions that triangles use
+};
+
+}  // namespace raykiln::render

@@ -1,0 +1,1 @@
+#include "raykiln/scene/scene.hpp"
