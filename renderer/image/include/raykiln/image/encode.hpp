@@ -1,0 +1,29 @@
+// Pictures as bytes. OpenImageIO is used behind this header and nowhere else.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "raykiln/image/film.hpp"
+
+namespace raykiln::render {
+
+using Bytes = std::vector<std::uint8_t>;
+struct EncodeError {
+  std::string message;
+};
+
+/// 8-bit sRGB PNG of exposure 2^stops times the picture, clipped to [0, 1] (NaN shows as black).
+[[nodiscard]] std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops);
+
+/// Linear float32 EXR with the given string attributes.
+[[nodiscard]] std::variant<Bytes, EncodeError> encode_exr(
+    const Image& image, const std::map<std::string, std::string>& attributes);
+
+/// Number of threads that the image library may start by itself (1 in a server that has its own pool).
+void set_image_library_threads(int threads);
+
+}  // namespace raykiln::render
