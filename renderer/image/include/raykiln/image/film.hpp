@@ -1,6 +1,7 @@
-// The film: per pixel sums, moments and counters in double, folded block by block.
+// The film: per pixel sums, moments and counters, folded block by block.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,22 +39,45 @@ struct SampleBlock {
 
 inline constexpr int kReplicates = 8;
 
-enum class Fold : std::uint8_t { kSum, kMax };
+/// How a plane of two pieces of work becomes one. Moments are merged after Chan, Golub & LeVeque
+/// (1979, eq. 1.5b): sums of squared deviations about their own means, never differences of squares.
+enum class Fold : std::uint8_t { kSum, kMax, kMoments };
 
-/// What one plane of film or block holds: `channels` doubles a pixel, interleaved, row-major.
+/// One plane: `channels` values a pixel, interleaved, row-major.
 struct PlaneSpec {
   std::string_view name;
   int channels;
   Fold fold;
 };
 
-/// beauty(3 sums), samples(1), luminance(per replicate: count, sum, sum of squared deviations
-/// ...), largest(1 max), nan, inf, negative, truncated (1 each). See film.cpp for the exact list.
+/// The planes of a block, in the order of PlaneSet::planes.
+enum BlockPlane : std::size_t {
+  kBeauty,            ///< 3 channels: sums of RGB radiance over the samples that count
+  kSamples,           ///< samples that count: rendered and finite
+  kLuminanceMoment,   ///< sum of squared deviations of luminance from its mean in this block
+  kLargest,           ///< largest luminance of a sample (0 when there is none)
+  kNan,               ///< samples dropped because a channel was NaN
+  kInf,               ///< samples dropped because a channel did not fit a float32
+  kNegative,          ///< samples with a negative channel (they count)
+  kTruncated,         ///< samples whose path was cut at max_depth while it could go on
+  kBlockPlanes
+};
+[[nodiscard]] std::span<const PlaneSpec> block_planes();
+
+/// The planes of a film, by name: those of a block, and luminance_count and luminance_sum with one
+/// channel for each replicate.
 [[nodiscard]] std::span<const PlaneSpec> film_planes();
 
 struct PlaneSet {
-  std::vector<std::vector<double>> planes;  ///< one for each of film_planes()
+  std::vector<std::vector<double>> planes;  ///< one for each of block_planes()
 };
+
+/// Planes of zeros for so many pixels.
+[[nodiscard]] PlaneSet make_block_planes(std::size_t pixels);
+
+/// Adds one sample to pixel `pixel` of a block. A sample with a channel that is NaN or beyond
+/// float32 is dropped and counted. Returns false when it was dropped. Call in order of sample.
+bool add_sample(PlaneSet& block, std::size_t pixel, const Rgbd& radiance, bool truncated);
 
 struct BlockResult {
   SampleBlock block;
@@ -72,6 +96,7 @@ struct Image {
   std::vector<float> rgb;
 };
 
+/// Not thread-safe; one owner folds and reads.
 class Film {
  public:
   Film(int width, int height);
@@ -80,22 +105,49 @@ class Film {
   [[nodiscard]] static std::size_t bytes_per_pixel();
 
   /// Folds a block of a tile into its pixels. Blocks of a pixel must come in order of index; the
-  /// caller sees to it. An incomplete block is kept apart and replaced by a later one of the same index.
+  /// caller sees to it. An incomplete block is kept apart until another block of the pixel comes
+  /// (the same index again, whole or longer), which replaces it.
   void fold(const PixelRect& tile, const BlockResult& block);
 
   /// Mean of all samples so far; black where there are none.
   [[nodiscard]] Image resolve() const;
 
-  /// A plane over the whole film with the incomplete block folded in.
+  /// A plane of film_planes() over the whole film with the incomplete blocks folded in; empty when
+  /// there is no plane of that name.
   [[nodiscard]] std::vector<double> plane(std::string_view name) const;
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
  private:
+  /// What a pixel holds of one block, or of all.
+  struct Counts {
+    std::uint32_t nan = 0, inf = 0, negative = 0, truncated = 0;
+  };
+  struct Pixel {
+    std::array<double, 3> beauty{};
+    double moment = 0.0;
+    double largest = 0.0;
+    Counts counts;
+    std::array<double, kReplicates> luminance_sum{};
+    std::array<std::uint32_t, kReplicates> luminance_count{};
+  };
+  struct Tail {
+    std::array<double, 3> beauty{};
+    double moment = 0.0;
+    double largest = 0.0;
+    Counts counts;
+    std::uint32_t samples = 0;
+    std::uint32_t replicate = 0;
+  };
+
+  static Tail read_block(const BlockResult& block, std::size_t pixel);
+  static void fold_pixel(Pixel& into, const Tail& from);
+  [[nodiscard]] Pixel whole(std::size_t pixel) const;
+
   int width_, height_;
-  PlaneSet folded_;
-  PlaneSet tail_;  ///< the incomplete last blocks; empty until there is one
+  std::vector<Pixel> pixels_;
+  std::vector<Tail> tails_;  ///< the incomplete last blocks; empty until there is one
 };
 
 }  // namespace raykiln::render

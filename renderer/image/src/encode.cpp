@@ -1,0 +1,79 @@
+#include "raykiln/image/encode.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace raykiln::render {
+namespace {
+
+/// IEC 61966-2-1: linear to sRGB, both in [0, 1].
+double srgb_from_linear(double x) {
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+}
+
+std::uint8_t display_byte(double linear) {
+  if (!(linear > 0.0)) return 0;  // NaN too
+  return static_cast<std::uint8_t>(std::lround(255.0 * srgb_from_linear(std::min(linear, 1.0))));
+}
+
+OIIO::ImageSpec rgb_spec(const Image& image, OIIO::TypeDesc type) {
+  OIIO::ImageSpec spec(image.width, image.height, 3, type);
+  spec.channelnames = {"R", "G", "B"};
+  return spec;
+}
+
+/// Writes to memory through the library's output proxy; both formats used here support it.
+std::variant<Bytes, EncodeError> encode(const char* name, const OIIO::ImageSpec& spec,
+                                        OIIO::TypeDesc type, const void* pixels) {
+  Bytes bytes;
+  OIIO::Filesystem::IOVecOutput sink(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name);
+  if (!output) return EncodeError{OIIO::geterror()};
+  if (!output->supports("ioproxy") || !output->set_ioproxy(&sink)) {
+    return EncodeError{std::string(name) + ": this build of OpenImageIO cannot write to memory"};
+  }
+  if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) {
+    return EncodeError{output->geterror()};
+  }
+  return bytes;
+}
+
+bool consistent(const Image& image) {
+  return image.width > 0 && image.height > 0 &&
+         image.rgb.size() == 3 * static_cast<std::size_t>(image.width) *
+                                 static_cast<std::size_t>(image.height);
+}
+
+}  // namespace
+
+std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops) {
+  if (!consistent(image)) return EncodeError{"the picture has no pixels"};
+  const double gain = std::exp2(exposure_stops);
+  std::vector<std::uint8_t> display(image.rgb.size());
+  std::transform(image.rgb.begin(), image.rgb.end(), display.begin(),
+                 [gain](float x) { return display_byte(gain * static_cast<double>(x)); });
+  OIIO::ImageSpec spec = rgb_spec(image, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  return encode("a.png", spec, OIIO::TypeDesc::UINT8, display.data());
+}
+
+std::variant<Bytes, EncodeError> encode_exr(const Image& image,
+                                            const std::map<std::string, std::string>& attributes) {
+  if (!consistent(image)) return EncodeError{"the picture has no pixels"};
+  OIIO::ImageSpec spec = rgb_spec(image, OIIO::TypeDesc::FLOAT);
+  spec.attribute("oiio:ColorSpace", "Linear");
+  spec.attribute("compression", "zip");
+  for (const auto& [key, value] : attributes) spec.attribute(key, value);
+  return encode("a.exr", spec, OIIO::TypeDesc::FLOAT, image.rgb.data());
+}
+
+void set_image_library_threads(int threads) {
+  OIIO::attribute("threads", threads);
+  OIIO::attribute("exr_threads", threads);
+}
+
+}  // namespace raykiln::render

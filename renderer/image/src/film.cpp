@@ -1,0 +1,120 @@
+#include "raykiln/image/film.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace raykiln::render {
+namespace {
+
+std::uint32_t as_count(double value) { return static_cast<std::uint32_t>(value); }
+
+double sum_luminance(const std::array<double, 3>& c) { return luminance({c[0], c[1], c[2]}); }
+
+}  // namespace
+
+Film::Film(int width, int height)
+    : width_(width),
+      height_(height),
+      pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+
+std::size_t Film::bytes_per_pixel() { return sizeof(Pixel) + sizeof(Tail); }
+
+Film::Tail Film::read_block(const BlockResult& result, std::size_t pixel) {
+  const auto& planes = result.planes.planes;
+  const auto at = [&](BlockPlane plane) { return planes[plane][pixel]; };
+  Tail tail;
+  std::copy_n(&planes[kBeauty][3 * pixel], 3, tail.beauty.begin());
+  tail.moment = at(kLuminanceMoment);
+  tail.largest = at(kLargest);
+  tail.counts = {as_count(at(kNan)), as_count(at(kInf)), as_count(at(kNegative)),
+                 as_count(at(kTruncated))};
+  tail.samples = as_count(at(kSamples));
+  tail.replicate = static_cast<std::uint32_t>(result.block.index % kReplicates);
+  return tail;
+}
+
+// Chan, Golub & LeVeque 1979: M = M_a + M_b + (mean_b - mean_a)^2 n_a n_b / (n_a + n_b).
+void Film::fold_pixel(Pixel& into, const Tail& from) {
+  const double n_a = static_cast<double>(
+      std::accumulate(into.luminance_count.begin(), into.luminance_count.end(), std::uint64_t{0}));
+  const double n_b = from.samples;
+  const double from_sum = sum_luminance(from.beauty);
+  into.moment += from.moment;
+  if (n_a > 0.0 && n_b > 0.0) {
+    const double difference = from_sum / n_b - sum_luminance(into.beauty) / n_a;
+    into.moment += difference * difference * (n_a * n_b / (n_a + n_b));
+  }
+  for (std::size_t c = 0; c < 3; ++c) into.beauty[c] += from.beauty[c];
+  into.largest = std::max(into.largest, from.largest);
+  into.counts.nan += from.counts.nan;
+  into.counts.inf += from.counts.inf;
+  into.counts.negative += from.counts.negative;
+  into.counts.truncated += from.counts.truncated;
+  into.luminance_sum[from.replicate] += from_sum;
+  into.luminance_count[from.replicate] += from.samples;
+}
+
+void Film::fold(const PixelRect& tile, const BlockResult& result) {
+  if (!result.block.complete && tails_.empty()) tails_.resize(pixels_.size());
+  std::size_t source = 0;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    std::size_t target = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                         static_cast<std::size_t>(tile.x0);
+    for (int x = tile.x0; x < tile.x1; ++x, ++source, ++target) {
+      const Tail read = read_block(result, source);
+      if (result.block.complete) fold_pixel(pixels_[target], read);
+      if (!tails_.empty()) tails_[target] = result.block.complete ? Tail{} : read;
+    }
+  }
+}
+
+Film::Pixel Film::whole(std::size_t pixel) const {
+  Pixel value = pixels_[pixel];
+  if (!tails_.empty()) fold_pixel(value, tails_[pixel]);
+  return value;
+}
+
+Image Film::resolve() const {
+  Image image{.width = width_, .height = height_, .rgb = std::vector<float>(3 * pixels_.size())};
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel pixel = whole(i);
+    const auto n = std::accumulate(pixel.luminance_count.begin(), pixel.luminance_count.end(),
+                                   std::uint64_t{0});
+    if (n == 0) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      image.rgb[3 * i + c] = static_cast<float>(pixel.beauty[c] / static_cast<double>(n));
+    }
+  }
+  return image;
+}
+
+std::vector<double> Film::plane(std::string_view name) const {
+  std::vector<double> values;
+  const auto gather = [&](auto&& append) {
+    for (std::size_t i = 0; i < pixels_.size(); ++i) append(whole(i));
+    return values;
+  };
+  const auto push_all = [&](const auto& list) {
+    for (const auto value : list) values.push_back(static_cast<double>(value));
+  };
+  if (name == "beauty") return gather([&](const Pixel& p) { push_all(p.beauty); });
+  if (name == "samples") {
+    return gather([&](const Pixel& p) {
+      values.push_back(
+          std::accumulate(p.luminance_count.begin(), p.luminance_count.end(), 0.0));
+    });
+  }
+  if (name == "luminance_count") return gather([&](const Pixel& p) { push_all(p.luminance_count); });
+  if (name == "luminance_sum") return gather([&](const Pixel& p) { push_all(p.luminance_sum); });
+  if (name == "luminance_moment") return gather([&](const Pixel& p) { values.push_back(p.moment); });
+  if (name == "largest") return gather([&](const Pixel& p) { values.push_back(p.largest); });
+  if (name == "nan") return gather([&](const Pixel& p) { values.push_back(p.counts.nan); });
+  if (name == "inf") return gather([&](const Pixel& p) { values.push_back(p.counts.inf); });
+  if (name == "negative") return gather([&](const Pixel& p) { values.push_back(p.counts.negative); });
+  if (name == "truncated") {
+    return gather([&](const Pixel& p) { values.push_back(p.counts.truncated); });
+  }
+  return values;
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "raykiln/image/film.hpp"
+
+namespace raykiln::render {
+namespace {
+
+/// A block of one pixel that holds these grey samples.
+BlockResult block_of(std::uint64_t index, const std::vector<double>& values, bool complete = true) {
+  BlockResult result{.block = sample_block(index), .planes = make_block_planes(1)};
+  result.block.complete = complete;
+  result.block.count = values.size();
+  for (const double value : values) add_sample(result.planes, 0, Rgbd(value), false);
+  return result;
+}
+const PixelRect kOnePixel{0, 0, 1, 1};
+
+TEST(Film, BytesPerPixelAreStatedAndModest) {
+  EXPECT_EQ(Film::bytes_per_pixel(), 216U);
+}
+
+TEST(Film, MeanAndMomentsMatchTheTwoPassFormula) {
+  const std::vector<std::vector<double>> blocks{{1.0}, {4.0}, {2.0, 8.0}, {0.0, 1.0, 1.0, 7.0}};
+  Film film(1, 1);
+  std::vector<double> all;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    film.fold(kOnePixel, block_of(b, blocks[b]));
+    all.insert(all.end(), blocks[b].begin(), blocks[b].end());
+  }
+  double mean = 0.0, moment = 0.0;
+  for (const double x : all) mean += x / static_cast<double>(all.size());
+  for (const double x : all) moment += (x - mean) * (x - mean);
+  EXPECT_NEAR(film.resolve().rgb[1], mean, 1e-6);
+  EXPECT_NEAR(film.plane("luminance_moment")[0], moment, 1e-12 * moment);
+  EXPECT_EQ(film.plane("samples")[0], 8.0);
+  EXPECT_EQ(film.plane("largest")[0], luminance(Rgbd(8.0)));
+  EXPECT_EQ(film.plane("luminance_count"), (std::vector<double>{1, 1, 2, 4, 0, 0, 0, 0}));
+  EXPECT_NEAR(film.plane("luminance_sum")[3], 9.0, 1e-12);
+}
+
+// 1000 +- 0.01: the difference of squares would lose every digit in float and eight in double.
+TEST(Film, VarianceSurvivesALargeMean) {
+  Film film(1, 1);
+  for (std::uint64_t b = 0; b < 1000; ++b) {
+    std::vector<double> values(sample_block(b).count);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1000.0 + (i % 2 == 0 ? 0.01 : -0.01);
+    film.fold(kOnePixel, block_of(b, values));
+  }
+  const double n = film.plane("samples")[0];
+  EXPECT_NEAR(film.plane("luminance_moment")[0] / n, 1e-4, 1e-10);
+}
+
+TEST(Film, IncompleteBlockIsReplacedByTheWholeOne) {
+  Film extended(1, 1), direct(1, 1);
+  extended.fold(kOnePixel, block_of(0, {1.0}));
+  extended.fold(kOnePixel, block_of(1, {2.0}));
+  extended.fold(kOnePixel, block_of(2, {5.0}, false));
+  EXPECT_EQ(extended.plane("samples")[0], 3.0);
+  EXPECT_NEAR(extended.resolve().rgb[0], 8.0 / 3.0, 1e-6);
+  extended.fold(kOnePixel, block_of(2, {5.0, 6.0}));
+
+  for (std::uint64_t b = 0; b < 3; ++b) {
+    direct.fold(kOnePixel, block_of(b, b == 2 ? std::vector<double>{5.0, 6.0}
+                                              : std::vector<double>{static_cast<double>(b) + 1.0}));
+  }
+  for (const PlaneSpec& spec : film_planes()) {
+    EXPECT_EQ(extended.plane(spec.name), direct.plane(spec.name)) << spec.name;
+  }
+}
+
+TEST(Film, NonFiniteSamplesAreDroppedAndCountedPerKind) {
+  // The build must not use -ffinite-math-only: this also fails if isnan is optimised away.
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const BlockResult block = block_of(4, {1.0, nan, inf, -inf, 1e39, -1.0, 2.0});
+  Film film(1, 1);
+  film.fold(kOnePixel, block);
+  EXPECT_EQ(film.plane("samples")[0], 3.0);
+  EXPECT_EQ(film.plane("nan")[0], 1.0);
+  EXPECT_EQ(film.plane("inf")[0], 3.0);
+  EXPECT_EQ(film.plane("negative")[0], 1.0);
+  EXPECT_NEAR(film.resolve().rgb[0], 2.0 / 3.0, 1e-6);
+}
+
+TEST(Film, TileGoesToItsPlaceAndUnsampledPixelsStayBlack) {
+  Film film(3, 2);
+  BlockResult block{.block = sample_block(0), .planes = make_block_planes(2)};
+  add_sample(block.planes, 0, {1.0, 2.0, 3.0}, false);
+  add_sample(block.planes, 1, {4.0, 5.0, 6.0}, true);
+  film.fold({1, 1, 3, 2}, block);
+  const std::vector<float> expected{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(film.resolve().rgb, expected);
+  EXPECT_EQ(film.plane("truncated"), (std::vector<double>{0, 0, 0, 0, 0, 1}));
+  EXPECT_TRUE(film.plane("no such plane").empty());
+}
+
+TEST(Film, AHundredMillionOnesAddUp) {
+  // Whole blocks of ones, written without rendering them: double sums do not stop at 2^24.
+  Film film(1, 1);
+  BlockResult block = block_of(7, std::vector<double>(16, 1.0));
+  block.planes.planes[kBeauty] = {1e6, 1e6, 1e6};
+  block.planes.planes[kSamples] = {1e6};
+  for (int i = 0; i < 100; ++i) film.fold(kOnePixel, block);
+  EXPECT_EQ(film.plane("beauty")[0], 1e8);
+  EXPECT_EQ(film.resolve().rgb[0], 1.0F);
+}
+
+}  // namespace
+}  // namespace raykiln::render
