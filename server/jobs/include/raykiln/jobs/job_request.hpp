@@ -1,0 +1,53 @@
+// What a user asks for, validated once against the limits.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "raykiln/base/config.hpp"
+#include "raykiln/base/result.hpp"
+
+namespace raykiln::server {
+
+enum class PixelMode { kRandom, kCentre };
+enum class DirectionSampling { kBsdf, kUniformSphere };
+enum class LightModel { kSeed };
+
+struct StopRule {
+  std::uint64_t samples = 64;  ///< a pixel
+};
+
+struct JobRequest {
+  std::string name;             ///< free text for people; may be empty
+  std::string scene;            ///< scene id: 64 hexadecimal digits
+  std::string camera;           ///< name of a camera of the scene; empty: its first one
+  int width = 640, height = 480;
+  StopRule stop;
+  LightModel light_model = LightModel::kSeed;
+  int max_depth = 8;            ///< reflections after the first hit
+  std::uint64_t seed = 0;
+  int tile = 64;                ///< pixels a side
+  int priority = 5;             ///< 1 (least) .. 10
+  int branches = 1;             ///< rays shot from each hit; more than 1 is the seed's tree
+  PixelMode pixel_mode = PixelMode::kRandom;
+  DirectionSampling direction_sampling = DirectionSampling::kBsdf;
+  bool emitter_sampling = true;
+};
+
+[[nodiscard]] std::string_view name(PixelMode value);
+[[nodiscard]] std::string_view name(DirectionSampling value);
+[[nodiscard]] std::string_view name(LightModel value);
+[[nodiscard]] std::optional<PixelMode> pixel_mode_named(std::string_view name);
+[[nodiscard]] std::optional<DirectionSampling> direction_sampling_named(std::string_view name);
+[[nodiscard]] std::optional<LightModel> light_model_named(std::string_view name);
+
+/// The first thing that is wrong (code "invalid_job", `where` a JSON pointer such as
+/// "/stop/samples"), or success. Whether scene and camera exist is the scheduler's to say.
+[[nodiscard]] Status validate(const JobRequest& request, const JobLimits& limits);
+
+/// Text that is equal exactly for equal requests: what an idempotency key is bound to.
+[[nodiscard]] std::string request_digest(const JobRequest& request);
+
+}  // namespace raykiln::server

@@ -1,0 +1,97 @@
+// All that can be said about a job at one revision: an immutable value.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raykiln/base/clock.hpp"
+#include "raykiln/base/result.hpp"
+#include "raykiln/jobs/job_request.hpp"
+#include "raykiln/jobs/job_state.hpp"
+
+namespace raykiln::server {
+
+using JobId = std::string;
+
+enum class PrepareStage { kNone, kWaiting, kImporting, kBuilding };
+[[nodiscard]] std::string_view name(PrepareStage stage);  ///< "", "waiting", "importing", "building"
+
+struct PrepareProgress {
+  PrepareStage stage = PrepareStage::kNone;
+  double fraction = 0.0;  ///< of the stage, [0, 1]
+};
+
+struct RenderProgress {
+  std::uint64_t samples_done = 0;    ///< over all pixels
+  std::uint64_t samples_target = 0;  ///< over all pixels
+  double samples_per_pixel = 0.0;    ///< mean so far
+  int tiles = 0;                     ///< of the film
+  int tiles_started = 0;             ///< with at least one sample in every pixel
+  int tiles_done = 0;                ///< with all samples
+  [[nodiscard]] double fraction() const {
+    return samples_target == 0
+               ? 0.0
+               : static_cast<double>(samples_done) / static_cast<double>(samples_target);
+  }
+};
+
+/// A sample whose value was not finite, to be replayed exactly.
+struct LocatedSample {
+  int x = 0, y = 0;
+  std::uint64_t sample = 0;
+};
+
+struct JobStatistics {
+  double prepare_seconds = 0.0;  ///< waiting for scene and tree
+  double render_seconds = 0.0;   ///< from the first task to the last sample (or until now)
+  double worker_seconds = 0.0;   ///< spent rendering, summed over workers
+  double idle_seconds = 0.0;     ///< of workers while this job had work to do
+  double merge_seconds = 0.0;
+  double publish_seconds = 0.0;  ///< snapshots, resolving and storing pictures
+  std::uint64_t tasks = 0, retried_tasks = 0;
+  std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
+  std::uint64_t non_finite = 0, negative = 0, truncated = 0;
+  std::vector<LocatedSample> bad_samples;  ///< at most 16
+  std::uint64_t film_bytes = 0;
+
+  [[nodiscard]] std::uint64_t rays() const { return camera_rays + bounce_rays + shadow_rays; }
+  /// Rays a second of wall time while rendering.
+  [[nodiscard]] double rays_per_second() const {
+    return render_seconds > 0.0 ? static_cast<double>(rays()) / render_seconds : 0.0;
+  }
+  /// (idle + merge + publish) / worker time.
+  [[nodiscard]] double overhead_fraction() const {
+    return worker_seconds > 0.0
+               ? (idle_seconds + merge_seconds + publish_seconds) / worker_seconds
+               : 0.0;
+  }
+};
+
+struct JobSnapshot {
+  JobId id;
+  JobRequest request;
+  JobState state = JobState::kQueued;
+  std::uint64_t revision = 1;  ///< rises by one with every change
+  /// Revision at which the picture last changed; 0: there is none yet.
+  std::uint64_t image_revision = 0;
+  WallTime created{};
+  std::optional<WallTime> started{};   ///< left the queue
+  std::optional<WallTime> finished{};  ///< reached a final state
+  std::optional<std::size_t> queue_position{};  ///< 0: next; while queued
+  PrepareProgress prepare;
+  RenderProgress progress;
+  double elapsed_seconds = 0.0;                 ///< since it left the queue
+  std::optional<double> remaining_seconds{};    ///< estimate; while rendering
+  JobStatistics statistics;
+  std::vector<std::string> warnings;            ///< of the scene, and of this job
+  std::optional<Error> error{};                 ///< when failed
+};
+
+/// What the store keeps. decode_job gives nothing for text that is no record of a job.
+[[nodiscard]] std::string encode_job(const JobSnapshot& job);
+[[nodiscard]] std::optional<JobSnapshot> decode_job(std::string_view text);
+
+}  // namespace raykiln::server

@@ -1,0 +1,108 @@
+// Which piece of a job's film is rendered next. Pure decisions: no clock, no threads, no pixels.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace raykiln::server {
+
+/// Pixels x0 <= x < x1, y0 <= y < y1.
+struct TileRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  [[nodiscard]] std::uint64_t pixels() const {
+    return static_cast<std::uint64_t>(x1 - x0) * static_cast<std::uint64_t>(y1 - y0);
+  }
+  friend bool operator==(const TileRect&, const TileRect&) = default;
+};
+
+/// One task: the blocks [first_block, end_block) of some rectangles, each a tile or a band of one.
+struct WorkItem {
+  std::uint64_t id = 0;  ///< unique within the plan
+  int attempt = 1;
+  std::size_t first_block = 0, end_block = 0;
+  struct Part {
+    std::size_t tile = 0;
+    TileRect rect;
+  };
+  std::vector<Part> parts;
+};
+
+/// How long a task is meant to last, and how much memory its result may take.
+struct TaskLength {
+  double low_seconds = 0.005, target_seconds = 0.025, high_seconds = 0.050;
+  std::uint64_t least_stream = 1024;             ///< pixels a band keeps, for long ray streams
+  std::uint64_t max_pixel_blocks = 64 * 1024;    ///< pixels times blocks of one task's result
+};
+
+/// Tiles of `tile` pixels a side over a width x height film, centre first.
+[[nodiscard]] std::vector<TileRect> cut_tiles(int width, int height, int tile);
+
+/// The plan of one job. Invariants: the first block of all tiles comes before any second one; the
+/// blocks of a pixel are handed out in order and a pass of a tile starts only when the one before is
+/// merged; an item is merged at most once. The order of items depends on measured time, the set of
+/// (pixel, block) pairs never does.
+class TilePlan {
+ public:
+  /// `block_samples`: samples of each block, in order; at least one block.
+  TilePlan(int width, int height, int tile, std::vector<std::uint32_t> block_samples,
+           TaskLength length);
+
+  /// Next item, or nothing while all that is left is in flight.
+  [[nodiscard]] std::optional<WorkItem> next();
+
+  /// The result of this item is in the film. False, and nothing changes, when the item is not in
+  /// flight (late, twice, or after abandon()). `seconds`: time that its rendering took.
+  bool merged(const WorkItem& item, double seconds);
+
+  /// The item came to nothing: it is handed out again, with attempt + 1, before anything else.
+  bool failed(const WorkItem& item);
+
+  [[nodiscard]] bool in_flight(const WorkItem& item) const;
+  [[nodiscard]] std::size_t items_in_flight() const { return flights_.size(); }
+  [[nodiscard]] bool done() const { return tiles_done_ == static_cast<int>(tiles_.size()); }
+
+  [[nodiscard]] int tiles() const { return static_cast<int>(tiles_.size()); }
+  [[nodiscard]] int tiles_started() const { return tiles_started_; }
+  [[nodiscard]] int tiles_done() const { return tiles_done_; }
+  [[nodiscard]] std::uint64_t samples_done() const { return samples_done_; }
+  [[nodiscard]] std::uint64_t samples_target() const { return samples_target_; }
+  /// Mean seconds of one sample of one pixel on one worker; 0 while unknown.
+  [[nodiscard]] double seconds_per_sample() const { return seconds_per_sample_; }
+
+ private:
+  struct Tile {
+    TileRect rect;
+    std::size_t next_block = 0;  ///< first block that is not merged
+    std::size_t pass_end = 0;    ///< end of the pass that is being handed out
+    int next_row = 0;            ///< first row of the pass not handed out; y1: all are
+    int bands_in_flight = 0;
+  };
+  struct Flight {
+    WorkItem item;
+    std::uint64_t samples = 0;
+  };
+  [[nodiscard]] std::size_t pick_pass_end(const Tile& tile) const;
+  [[nodiscard]] std::uint64_t samples_in(std::size_t first, std::size_t end) const;
+  [[nodiscard]] int band_rows(const Tile& tile) const;
+  [[nodiscard]] bool ready(const Tile& tile) const;
+  void take_parts(WorkItem& item, std::size_t tile_index);
+  void end_band(std::size_t tile_index);
+  [[nodiscard]] std::optional<std::size_t> next_ready_tile();
+
+  std::vector<std::uint32_t> block_samples_;
+  TaskLength length_;
+  std::vector<Tile> tiles_;
+  std::vector<WorkItem> again_;
+  std::vector<Flight> flights_;
+  std::size_t cursor_ = 0;       ///< tiles before it have had their turn in this round
+  std::size_t round_block_ = 0;  ///< tiles whose next block is below it come first
+  std::uint64_t next_id_ = 1;
+  int tiles_started_ = 0, tiles_done_ = 0;
+  std::uint64_t samples_done_ = 0, samples_target_ = 0;
+  double seconds_per_sample_ = 0.0;
+};
+
+}  // namespace raykiln::server

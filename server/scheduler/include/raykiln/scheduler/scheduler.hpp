@@ -1,0 +1,85 @@
+// The one owner of all mutable job state: plans, films, retries, publication.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "raykiln/base/clock.hpp"
+#include "raykiln/base/config.hpp"
+#include "raykiln/base/log.hpp"
+#include "raykiln/base/metrics.hpp"
+#include "raykiln/base/result.hpp"
+#include "raykiln/events/event_hub.hpp"
+#include "raykiln/scheduler/views.hpp"
+#include "raykiln/store/store.hpp"
+#include "raykiln/workers/executor.hpp"
+#include "raykiln/workers/scene_cache.hpp"
+#include "raykiln/workers/scene_intake.hpp"
+
+namespace raykiln::server {
+
+/// The answer to one call. Invoked exactly once, on a thread of the scheduler, never under a lock and
+/// never within the call itself: it must only post. After shutdown() the answer is "shutting_down".
+template <class T>
+using Reply = std::function<void(Result<T>)>;
+
+/// Safe to use from any thread; no call blocks on anything but a short lock.
+///
+/// Errors that calls answer with, besides those of store, intake and validation: unknown_job,
+/// unknown_scene, unknown_camera, invalid_job, invalid_cursor, film_too_large (kTooLarge), queue_full
+/// (kTooMany), idempotency_key_reused (kConflict), job_finished (kConflict), scene_in_use
+/// (kConflict), digest_mismatch (kInvalid), intake_busy (kTooMany), no_image (kNotFound),
+/// unknown_layer (kInvalid), too_many_watchers (kTooMany), shutting_down (kUnavailable).
+class Scheduler {
+ public:
+  struct Parts {
+    Store& store;
+    Executor& executor;
+    SceneIntake& intake;
+    SceneCache& cache;
+    const Clock& clock;
+    MetricsRegistry& metrics;
+    Log log;
+  };
+  /// Reads the store: unfinished jobs are queued again. All parts must outlive the scheduler.
+  Scheduler(const Config& config, Parts parts);
+  ~Scheduler();  ///< shutdown(0 s)
+  Scheduler(const Scheduler&) = delete;
+  Scheduler& operator=(const Scheduler&) = delete;
+
+  // Jobs.
+  void submit(SubmitJob submission, Reply<SubmittedJob> reply);
+  void get(JobId id, Reply<JobSnapshot> reply);
+  void list(ListJobs query, Reply<JobPage> reply);
+  /// The snapshot just after; "job_finished" when it had ended in another way than cancelled.
+  void cancel(JobId id, Reply<JobSnapshot> reply);
+  /// See EventHub: `wake` must only post; take() of the subscription gives the newest snapshot, the
+  /// first call the present one.
+  void watch(JobId id, std::function<void()> wake, Reply<std::unique_ptr<Subscription>> reply);
+  /// The newest picture, resolved once per revision. `layer`: "beauty".
+  void image(JobId id, std::string layer, Reply<JobImagePtr> reply);
+
+  // Scenes. Upload: store.begin_upload(), append() on the caller's thread, finish(), add_scene().
+  /// Imports and validates, then commits; a known scene is answered at once.
+  void add_scene(std::unique_ptr<SceneUpload> upload, AddSceneOptions options,
+                 Reply<AddedScene> reply);
+  void scene(std::string id, Reply<SceneView> reply);
+  void scenes(std::size_t offset, std::size_t limit, Reply<std::vector<SceneView>> reply);
+  void delete_scene(std::string id, Reply<std::monostate> reply);
+  /// Starts to make scene and tree ready, if they are not; answers at once with the state.
+  void prepare_scene(std::string id, Reply<SceneView> reply);
+
+  void status(Reply<SchedulerStatus> reply);
+
+  /// Blocks: admits nothing more, starts no queued job, lets active jobs work on until `drain` has
+  /// passed, then stops what is in flight and saves. What has not ended runs again at the next start.
+  void shutdown(std::chrono::milliseconds drain);
+
+ private:
+  class Core;
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace raykiln::server

@@ -1,0 +1,78 @@
+// What the scheduler tells about scenes and pictures.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raykiln/jobs/job_snapshot.hpp"
+#include "raykiln/render/render.hpp"
+#include "raykiln/store/store.hpp"
+#include "raykiln/workers/scene_cache.hpp"
+#include "raykiln/workers/scene_report.hpp"
+
+namespace raykiln::server {
+
+struct SceneView {
+  SceneRecord record;
+  SceneReport report;  ///< decoded from the record
+  CacheState cache = CacheState::kAbsent;
+  PrepareProgress prepare;             ///< while kPreparing
+  std::optional<TreeReport> tree{};    ///< nothing before the build
+};
+
+struct AddedScene {
+  SceneView scene;
+  bool created = false;  ///< false: it was known already
+};
+
+struct AddSceneOptions {
+  std::string name;             ///< free text; may be empty
+  std::string expected_digest;  ///< empty, or what the id must come out as ("digest_mismatch")
+};
+
+struct SubmitJob {
+  JobRequest request;
+  std::string idempotency_key;  ///< empty: none; at most 200 bytes
+};
+
+struct SubmittedJob {
+  JobSnapshot job;
+  bool created = false;  ///< false: the key was used before for an equal request
+};
+
+struct ListJobs {
+  std::optional<JobState> state{};
+  std::string scene{};    ///< empty: any
+  std::string cursor{};   ///< of the page before; empty: the newest
+  std::size_t limit = 50; ///< 1 .. 500
+};
+
+struct JobPage {
+  std::vector<JobSnapshot> jobs;  ///< newest first
+  std::string next_cursor;        ///< empty: no more
+};
+
+/// A job's picture at one revision: immutable, to be encoded by whoever asked, at any exposure.
+struct JobImage {
+  JobId job;
+  std::uint64_t revision = 0;  ///< the job's revision at which this picture came to be
+  bool is_final = false;       ///< the job has ended: it will not change any more
+  std::string layer = "beauty";
+  render::Image image;         ///< linear RGB
+  std::string scene;           ///< scene id
+  JobRequest request;
+  double samples_per_pixel = 0.0;
+  double render_seconds = 0.0;
+};
+using JobImagePtr = std::shared_ptr<const JobImage>;
+
+struct SchedulerStatus {
+  bool accepting = true;
+  std::size_t queued = 0, active = 0, watchers = 0;
+};
+
+}  // namespace raykiln::server
