@@ -23,6 +23,7 @@ enum class DirectionSampling : std::uint8_t { kBsdf, kUniformSphere };
 struct RenderSettings {
   int width = 640, height = 480;
   int camera = 0;                ///< index into Scene::cameras
+  std::optional<Camera> own_camera{};  ///< used instead of `camera` when set; as in Scene::cameras
   LightModel light_model = LightModel::kSeed;
   int max_depth = 8;             ///< reflections after the first hit
   int branches = 1;              ///< rays shot from each hit; more than 1 is the seed's tree

@@ -15,13 +15,12 @@ inline constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 /// What a job may ask for.
 struct JobLimits {
   int max_side = 16'384;                        ///< pixels
-  std::uint64_t max_pixels = 64'000'000;
-  std::uint64_t max_samples = 1'000'000;        ///< a pixel
-  int max_depth = 256;                          ///< reflections after the first hit
+  std::uint64_t max_samples = 1'048'576;        ///< a pixel
+  int max_depth = 64;                           ///< reflections after the first hit
   int max_branches = 16;
   std::uint64_t max_branch_paths = 1'000'000;   ///< branches ^ max_depth
   int max_tile = 4'096;                         ///< pixels a side
-  int max_priority = 10;                        ///< 1 .. this; 1 is the least
+  int max_priority = 100;                       ///< 1 .. this
   std::size_t max_name_bytes = 200;
 };
 
@@ -29,11 +28,11 @@ struct JobLimits {
 struct UploadLimits {
   std::uint64_t max_upload_bytes = 2 * kGiB;     ///< of one upload
   std::uint64_t max_staging_bytes = 4 * kGiB;    ///< of all uploads in progress
-  std::size_t max_files = 10'000;                ///< files of a multipart upload
+  std::size_t max_files = 256;                   ///< files of a multipart upload
   std::size_t max_entries = 10'000;              ///< entries of an archive
   std::uint64_t max_unpacked_bytes = 8 * kGiB;   ///< of all files of an archive
   double max_unpack_ratio = 1'000.0;             ///< unpacked / packed, above 16 MiB unpacked
-  std::size_t max_name_bytes = 512;              ///< of one file name
+  std::size_t max_name_bytes = 255;              ///< of one file name
 };
 
 struct SchedulerSettings {
@@ -67,10 +66,10 @@ struct HttpSettings {
   std::uint16_t port = 8080;                     ///< 0: any free one
   int threads = 2;
   std::size_t max_connections = 512;
-  std::size_t max_json_bytes = 64 * 1024;        ///< of a JSON request body
+  std::size_t max_json_bytes = 256 * 1024;       ///< of a JSON request body
   std::size_t max_watchers = 256;                ///< event streams at once
   std::chrono::seconds request_timeout{30};      ///< without progress
-  std::chrono::seconds heartbeat{15};            ///< of an event stream
+  std::chrono::seconds heartbeat{10};            ///< of an event stream
 };
 
 struct Config {

@@ -37,8 +37,8 @@ class EventHub {
   /// the job is forgotten.
   void publish(SnapshotPtr snapshot);
 
-  /// Watches from `current` on. `wake` runs on the publisher's thread and must only post. "too_many_watchers"
-  /// (kTooMany) at the bound.
+  /// Watches from `current` on. `wake` runs on the publisher's thread and must only post. "too_many_streams"
+  /// (kUnavailable) at the bound.
   [[nodiscard]] Result<std::unique_ptr<Subscription>> subscribe(SnapshotPtr current,
                                                                 std::function<void()> wake);
 

@@ -33,7 +33,4 @@ class FairShare {
   double now_ = 0.0;  ///< pass of the member that was served last
 };
 
-/// 2^((priority - 5) / 2): two steps of priority double the share.
-[[nodiscard]] double priority_weight(int priority);
-
 }  // namespace raykiln::server

@@ -1,10 +1,12 @@
 // What a user asks for, validated once against the limits.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "raykiln/base/config.hpp"
 #include "raykiln/base/result.hpp"
@@ -19,17 +21,28 @@ struct StopRule {
   std::uint64_t samples = 64;  ///< a pixel
 };
 
+/// A pinhole of the user's own, world space in metres.
+struct OwnCamera {
+  std::array<double, 3> eye{};
+  std::array<double, 3> look_at{};
+  std::array<double, 3> up{0.0, 1.0, 0.0};
+  double fov_deg = 40.0;  ///< full vertical angle
+};
+
+/// Index into the cameras of the scene, name of one of them, or one of the user's own.
+using CameraChoice = std::variant<int, std::string, OwnCamera>;
+
 struct JobRequest {
   std::string name;             ///< free text for people; may be empty
   std::string scene;            ///< scene id: 64 hexadecimal digits
-  std::string camera;           ///< name of a camera of the scene; empty: its first one
+  CameraChoice camera = 0;
   int width = 640, height = 480;
   StopRule stop;
   LightModel light_model = LightModel::kSeed;
   int max_depth = 8;            ///< reflections after the first hit
   std::uint64_t seed = 0;
   int tile = 64;                ///< pixels a side
-  int priority = 5;             ///< 1 (least) .. 10
+  int priority = 10;            ///< 1 .. 100: share of the workers relative to other jobs
   int branches = 1;             ///< rays shot from each hit; more than 1 is the seed's tree
   PixelMode pixel_mode = PixelMode::kRandom;
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
@@ -43,7 +56,7 @@ struct JobRequest {
 [[nodiscard]] std::optional<DirectionSampling> direction_sampling_named(std::string_view name);
 [[nodiscard]] std::optional<LightModel> light_model_named(std::string_view name);
 
-/// The first thing that is wrong (code "invalid_job", `where` a JSON pointer such as
+/// The first thing that is wrong (code "invalid_request", `where` a JSON pointer such as
 /// "/stop/samples"), or success. Whether scene and camera exist is the scheduler's to say.
 [[nodiscard]] Status validate(const JobRequest& request, const JobLimits& limits);
 

@@ -38,6 +38,13 @@ struct RenderProgress {
   }
 };
 
+/// What was accepted but not taken as it stands.
+struct JobWarning {
+  std::string code;  ///< snake_case
+  std::string message;
+  std::string where;
+};
+
 /// A sample whose value was not finite, to be replayed exactly.
 struct LocatedSample {
   int x = 0, y = 0;
@@ -46,12 +53,14 @@ struct LocatedSample {
 
 struct JobStatistics {
   double prepare_seconds = 0.0;  ///< waiting for scene and tree
+  std::optional<double> tree_build_seconds{};  ///< 0: the tree was there already
   double render_seconds = 0.0;   ///< from the first task to the last sample (or until now)
   double worker_seconds = 0.0;   ///< spent rendering, summed over workers
   double idle_seconds = 0.0;     ///< of workers while this job had work to do
   double merge_seconds = 0.0;
   double publish_seconds = 0.0;  ///< snapshots, resolving and storing pictures
   std::uint64_t tasks = 0, retried_tasks = 0;
+  std::uint64_t paths = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t non_finite = 0, negative = 0, truncated = 0;
   std::vector<LocatedSample> bad_samples;  ///< at most 16
@@ -86,7 +95,7 @@ struct JobSnapshot {
   double elapsed_seconds = 0.0;                 ///< since it left the queue
   std::optional<double> remaining_seconds{};    ///< estimate; while rendering
   JobStatistics statistics;
-  std::vector<std::string> warnings;            ///< of the scene, and of this job
+  std::vector<JobWarning> warnings;            ///< of the scene, and of this job
   std::optional<Error> error{};                 ///< when failed
 };
 

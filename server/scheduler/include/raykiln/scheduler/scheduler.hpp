@@ -27,11 +27,13 @@ using Reply = std::function<void(Result<T>)>;
 
 /// Safe to use from any thread; no call blocks on anything but a short lock.
 ///
-/// Errors that calls answer with, besides those of store, intake and validation: unknown_job,
-/// unknown_scene, unknown_camera, invalid_job, invalid_cursor, film_too_large (kTooLarge), queue_full
-/// (kTooMany), idempotency_key_reused (kConflict), job_finished (kConflict), scene_in_use
-/// (kConflict), digest_mismatch (kInvalid), intake_busy (kTooMany), no_image (kNotFound),
-/// unknown_layer (kInvalid), too_many_watchers (kTooMany), shutting_down (kUnavailable).
+/// Errors that calls answer with, besides those of store, intake and validation: job_not_found,
+/// scene_not_found, invalid_request (`where` a JSON pointer, "/camera" too), invalid_parameter (cursor,
+/// layer), film_too_large (kTooLarge), queue_full (kTooMany), idempotency_key_reused (kConflict),
+/// job_finished (kConflict), scene_in_use (kConflict), digest_mismatch (kInvalid), too_many_uploads
+/// (kTooMany), image_not_ready (kNotFound), too_many_streams (kUnavailable), shutting_down
+/// (kUnavailable). A failed job's own error has the code of what went wrong, "render_failed" for
+/// faults while rendering.
 class Scheduler {
  public:
   struct Parts {

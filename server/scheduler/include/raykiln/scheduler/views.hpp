@@ -20,7 +20,7 @@ struct SceneView {
   SceneRecord record;
   SceneReport report;  ///< decoded from the record
   CacheState cache = CacheState::kAbsent;
-  PrepareProgress prepare;             ///< while kPreparing
+  PrepareProgress prepare;             ///< while kBuilding
   std::optional<TreeReport> tree{};    ///< nothing before the build
 };
 
@@ -45,7 +45,7 @@ struct SubmittedJob {
 };
 
 struct ListJobs {
-  std::optional<JobState> state{};
+  std::vector<JobState> states{};  ///< empty: any
   std::string scene{};    ///< empty: any
   std::string cursor{};   ///< of the page before; empty: the newest
   std::size_t limit = 50; ///< 1 .. 500

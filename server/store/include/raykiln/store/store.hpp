@@ -49,18 +49,18 @@ class SceneUpload {
  public:
   virtual ~SceneUpload() = default;
 
-  /// Starts the next file (zip and glb have exactly one). Errors: invalid_file_name, duplicate_file,
-  /// too_many_files.
+  /// Starts the next file (zip and glb have exactly one). Errors: unsafe_name (also a name that was
+  /// there before), payload_too_large (too many files).
   virtual Status begin_file(const std::string& name) = 0;
-  /// Appends to the current file. Errors: upload_too_large, staging_full, store_full, and
-  /// internal ones of the disk. After an error the upload can only be destroyed.
+  /// Appends to the current file. Errors: payload_too_large, too_many_uploads (no room for
+  /// staging now), storage_full, and internal ones of the disk. After an error the upload can only be destroyed.
   virtual Status append(std::span<const std::byte> bytes) = 0;
-  /// Ends the last file. Errors: empty_upload. To be called once, before the rest.
+  /// Ends the last file. Errors: scene_empty (no file). To be called once, before the rest.
   virtual Status finish() = 0;
 
   [[nodiscard]] virtual SceneKind kind() const = 0;
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;
-  /// After finish(): id that the scene will have.
+  /// After finish(): id that the scene will have, made as proto/openapi.yaml says.
   [[nodiscard]] virtual std::string id() const = 0;
   [[nodiscard]] virtual std::vector<SceneFileEntry> entries() const = 0;
   [[nodiscard]] virtual std::vector<BlobFile> files() const = 0;
@@ -85,16 +85,15 @@ struct JobRecord {
 };
 
 struct JobQuery {
-  std::optional<JobState> state{};
+  std::vector<JobState> states{};  ///< empty: any
   std::string scene{};             ///< empty: any
-  bool unfinished_only = false;
   std::uint64_t before = 0;        ///< only smaller sequences; 0: from the newest
   std::size_t limit = 50;
 };
 
 /// Safe to use from any thread. Every change is atomic and on disk when the call returns: a process
 /// killed at any moment leaves either all of it or nothing. Failures of the disk are
-/// ErrorKind::kInternal with code "storage_failed"; a full store is kStorageFull, "store_full".
+/// ErrorKind::kInternal with code "internal"; a full store is kStorageFull, "storage_full".
 class Store {
  public:
   virtual ~Store() = default;
@@ -104,20 +103,20 @@ class Store {
   /// Makes a finished upload a scene. False: a scene of this id is there already, and stays as it is.
   virtual Result<bool> commit_scene(std::unique_ptr<SceneUpload> upload, const std::string& name,
                                     WallTime created, const std::string& report) = 0;
-  virtual Result<SceneRecord> scene(const std::string& id) = 0;  ///< "unknown_scene"
+  virtual Result<SceneRecord> scene(const std::string& id) = 0;  ///< "scene_not_found"
   /// Newest first.
   virtual Result<std::vector<SceneRecord>> scenes(std::size_t offset, std::size_t limit) = 0;
   virtual Result<std::vector<BlobFile>> scene_files(const std::string& id) = 0;
-  /// "unknown_scene". Whether it is in use is the caller's to know.
+  /// "scene_not_found". Whether it is in use is the caller's to know.
   virtual Status delete_scene(const std::string& id) = 0;
   /// A fresh private directory on the same file system, for unpacking; removed at the next start
   /// if the caller does not do so.
   virtual Result<std::filesystem::path> scratch_directory() = 0;
 
-  /// Inserts or replaces. `sequence` is kept on replacement. "idempotency_key_taken" (kConflict)
+  /// Inserts or replaces. `sequence` is kept on replacement. "idempotency_key_reused" (kConflict)
   /// when another job has the key.
   virtual Status put_job(const JobRecord& job) = 0;
-  virtual Result<JobRecord> job(const std::string& id) = 0;  ///< "unknown_job"
+  virtual Result<JobRecord> job(const std::string& id) = 0;  ///< "job_not_found"
   virtual Result<std::optional<JobRecord>> job_with_key(const std::string& idempotency_key) = 0;
   /// Newest first.
   virtual Result<std::vector<JobRecord>> jobs(const JobQuery& query) = 0;
@@ -126,7 +125,7 @@ class Store {
 
   /// Replaces the image of a job.
   virtual Status put_image(const std::string& job, const StoredImage& image) = 0;
-  virtual Result<StoredImage> image(const std::string& job) = 0;  ///< "no_image"
+  virtual Result<StoredImage> image(const std::string& job) = 0;  ///< "image_not_ready"
 
   /// Bytes of scenes and images together.
   [[nodiscard]] virtual std::uint64_t bytes_used() const = 0;

@@ -30,8 +30,8 @@ struct ReadyScene {
   TreeReport tree;
 };
 
-enum class CacheState { kAbsent, kPreparing, kReady };
-[[nodiscard]] std::string_view name(CacheState state);  ///< "absent", "preparing", "ready"
+enum class CacheState { kAbsent, kBuilding, kReady };
+[[nodiscard]] std::string_view name(CacheState state);  ///< "absent", "building", "ready"
 
 /// SHA-256 over positions, indices and opaque flags: equal for scenes that differ in camera, lights or
 /// other properties of materials.

@@ -25,8 +25,9 @@ struct LoadedScene {
 class SceneIntake {
  public:
   virtual ~SceneIntake() = default;
-  /// Errors of the input are kInvalid, kUnsupported or kTooLarge with a code of their own and
-  /// `where` = "file", "file:line 12" or "file:/json/pointer"; "import_stopped" after a stop.
+  /// Errors of the input are kInvalid, kUnsupported or kTooLarge: scene_invalid, scene_unsupported,
+  /// scene_empty, scene_too_large and those of unpack_zip; `where` = "file", "file:12" or
+  /// "file:/json/pointer". kUnavailable "import_stopped" after a stop.
   /// Nothing that was unpacked stays behind.
   [[nodiscard]] virtual Result<LoadedScene> load(SceneKind kind, const std::vector<BlobFile>& files,
                                                  std::stop_token stop) = 0;
