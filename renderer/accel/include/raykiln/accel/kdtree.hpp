@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -74,6 +75,15 @@ struct HitOrder {
 /// Counts that do not jitter; summed into by every query that gets a pointer.
 struct TraversalCounters {
   std::uint64_t calls = 0, rays = 0, node_steps = 0, leaf_visits = 0, block_tests = 0;
+
+  TraversalCounters& operator+=(const TraversalCounters& other) {
+    calls += other.calls;
+    rays += other.rays;
+    node_steps += other.node_steps;
+    leaf_visits += other.leaf_visits;
+    block_tests += other.block_tests;
+    return *this;
+  }
 };
 
 class KdTree;  // see kdtree_data.hpp for the arrays; most callers need only the functions below

@@ -1,0 +1,51 @@
+#include <cassert>
+
+#include "brute_force.hpp"
+#include "scalar_walk.hpp"
+
+namespace raykiln::render {
+namespace {
+
+template <int W>
+Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, const Ray& ray,
+                  TraversalCounters& counters) {
+  Occlusion found = Occlusion::kNone;
+  ShearedRay sheared;
+  if (tree.box.empty() || !prepare(ray, sheared)) return found;
+  constexpr float kNoLimit = std::numeric_limits<float>::infinity();
+  ScalarWalk walk(tree, ray, counters);
+  walk.run(kNoLimit, [&](std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t b = first; b < first + count; ++b) {
+      ++counters.block_tests;
+      const bool opaque = test_block(sheared, blocks[b], [&](const Hit& hit) {
+        found = tree.opaque(hit.id) ? Occlusion::kOpaque : Occlusion::kUndecided;
+        return found == Occlusion::kOpaque;
+      });
+      if (opaque) return true;
+    }
+    return false;
+  });
+  return found;
+}
+
+}  // namespace
+
+void any_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> result,
+              Traversal traversal, TraversalCounters* counters) {
+  assert(result.size() >= rays.size());
+  TraversalCounters counts;
+  counts.calls = 1;
+  counts.rays = rays.size();
+  if (traversal == Traversal::kBruteForce) {
+    any_hits_brute_force(tree, rays, result.first(rays.size()), counts);
+  } else {
+    with_blocks(tree, [&](const auto& blocks) {
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        result[i] = any_hit(tree, blocks, rays[i], counts);
+      }
+    });
+  }
+  if (counters != nullptr) *counters += counts;
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,16 @@
+// Every ray against every triangle, straight from the mesh: what the tree must agree with.
+#pragma once
+
+#include <span>
+
+#include "raykiln/accel/kdtree.hpp"
+
+namespace raykiln::render {
+
+void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
+                              std::span<const HitOrder> after, TraversalCounters& counters);
+
+void any_hits_brute_force(const KdTree& tree, std::span<const Ray> rays,
+                          std::span<Occlusion> result, TraversalCounters& counters);
+
+}  // namespace raykiln::render

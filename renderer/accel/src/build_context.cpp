@@ -1,0 +1,57 @@
+#include "build_context.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raykiln/accel/kdtree_data.hpp"
+
+namespace raykiln::render {
+namespace {
+
+double finite_or(double value, double fallback) { return std::isfinite(value) ? value : fallback; }
+
+BuildParams sane(BuildParams p) {
+  const BuildParams defaults;
+  p.k_t = std::max(0.0, finite_or(p.k_t, defaults.k_t));
+  p.k_i = std::max(0.0, finite_or(p.k_i, defaults.k_i));
+  p.empty_factor = std::clamp(finite_or(p.empty_factor, defaults.empty_factor), 0.0, 1.0);
+  p.max_duplication =
+      std::clamp(finite_or(p.max_duplication, defaults.max_duplication), 1.0, 1024.0);
+  p.max_depth = std::clamp(p.max_depth, 0, kMaxKdDepth);
+  p.leaf_width = p.leaf_width == 16 ? 16 : 8;
+  return p;
+}
+
+}  // namespace
+
+BuildContext::BuildContext(const TriangleView& m, const BuildParams& p, TaskRunner& r)
+    : mesh(m), params(sane(p)), runner(r), concurrent(r.concurrency() > 1) {}
+
+bool BuildContext::stopped() {
+  if (stopped_.load(std::memory_order_relaxed)) return true;
+  if (!runner.stop_requested()) return false;
+  stopped_.store(true, std::memory_order_relaxed);
+  return true;
+}
+
+void BuildContext::for_each_axis(bool parallel, const std::function<void(int)>& body) {
+  if (!parallel || !concurrent) {
+    for (int axis = 0; axis < 3; ++axis) body(axis);
+    return;
+  }
+  const std::array<std::function<void()>, 3> tasks{[&] { body(0); }, [&] { body(1); },
+                                                   [&] { body(2); }};
+  runner.run(tasks);
+}
+
+void BuildContext::finished(double share) {
+  constexpr double kWhole = 0x1p40;
+  const auto units = static_cast<std::uint64_t>(share * kWhole);
+  const double fraction =
+      std::min(1.0, static_cast<double>(done_.fetch_add(units) + units) / kWhole);
+  const auto percent = static_cast<std::uint64_t>(fraction * 100.0);
+  std::uint64_t last = reported_.load(std::memory_order_relaxed);
+  if (percent > last && reported_.compare_exchange_strong(last, percent)) runner.progress(fraction);
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,51 @@
+#include <cassert>
+
+#include "brute_force.hpp"
+#include "scalar_walk.hpp"
+
+namespace raykiln::render {
+namespace {
+
+template <int W>
+Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, const Ray& ray,
+                const HitOrder* after, TraversalCounters& counters) {
+  Hit best;
+  ShearedRay sheared;
+  if (tree.box.empty() || !prepare(ray, sheared)) return best;
+  ScalarWalk walk(tree, ray, counters);
+  walk.run(best.t, [&](std::uint32_t first, std::uint32_t count) {
+    counters.block_tests += count;
+    for (std::uint32_t b = first; b < first + count; ++b) {
+      test_block(sheared, blocks[b], [&](const Hit& hit) {
+        const bool counts = after == nullptr || comes_after(hit, *after);
+        if (counts && comes_before(hit, best)) best = hit;
+        return false;
+      });
+    }
+    return false;
+  });
+  return best;
+}
+
+}  // namespace
+
+void closest_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
+                  std::span<const HitOrder> after, Traversal traversal,
+                  TraversalCounters* counters) {
+  assert(hits.size() >= rays.size() && (after.empty() || after.size() >= rays.size()));
+  TraversalCounters counts;
+  counts.calls = 1;
+  counts.rays = rays.size();
+  if (traversal == Traversal::kBruteForce) {
+    closest_hits_brute_force(tree, rays, hits.first(rays.size()), after, counts);
+  } else {
+    with_blocks(tree, [&](const auto& blocks) {
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        hits[i] = closest_hit(tree, blocks, rays[i], after.empty() ? nullptr : &after[i], counts);
+      }
+    });
+  }
+  if (counters != nullptr) *counters += counts;
+}
+
+}  // namespace raykiln::render
