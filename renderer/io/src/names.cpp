@@ -45,6 +45,7 @@ std::string_view name(ImportWarningCode code) {
     case ImportWarningCode::kIgnoredExtension: return "ignored_extension";
     case ImportWarningCode::kUnsupportedLight: return "unsupported_light";
     case ImportWarningCode::kUnsupportedCamera: return "unsupported_camera";
+    case ImportWarningCode::kBadPolygon: return "bad_polygon";
     case ImportWarningCode::kZeroAreaTriangles: return "zero_area_triangles";
     case ImportWarningCode::kCollapsedTriangles: return "collapsed_triangles";
     case ImportWarningCode::kCoarseCoordinates: return "coarse_coordinates";

@@ -55,6 +55,7 @@ enum class ImportWarningCode {
   kIgnoredExtension,
   kUnsupportedLight,
   kUnsupportedCamera,
+  kBadPolygon,
   kZeroAreaTriangles,
   kCollapsedTriangles,
   kCoarseCoordinates,

@@ -1,0 +1,266 @@
+#include "finish_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "material_mapping.hpp"
+#include "raykiln/scene/camera.hpp"
+#include "recentre.hpp"
+#include "zero_area.hpp"
+
+namespace raykiln::render::io {
+namespace {
+
+constexpr std::size_t kItemsPerPoll = 1 << 16;
+constexpr float kDefaultBackground = 0.8F;
+constexpr double kDefaultFovRad = 0.7;
+
+class Finisher {
+ public:
+  Finisher(SceneDraft& draft, Diagnostics& diagnostics, Scene& scene, ImportReport& report)
+      : draft_(draft), diagnostics_(diagnostics), scene_(scene), report_(report) {}
+
+  bool run() {
+    report_.source_triangles = draft_.triangles.size();
+    if (!measure()) return false;
+    scene_.origin = choose_origin(bounds_);
+    warn_about_digits();
+    if (!round_positions() || !drop_flat_triangles()) return false;
+    scene_.mesh.normals = std::move(draft_.normals);
+    finish_materials();
+    return finish_lights() && finish_cameras() && finish_background();
+  }
+
+ private:
+  bool empty() {
+    return diagnostics_.fail(ImportErrorCode::kEmptyScene, "the scene has no triangle with an area",
+                             report_.root_file, "", "export faces, not only points or lines");
+  }
+
+  // Scales, checks and bounds the positions that triangles use.
+  bool measure() {
+    if (draft_.triangles.empty()) return empty();
+    const double limit = diagnostics_.limits().max_coordinate;
+    bounds_ = {Vec3d(std::numeric_limits<double>::infinity()),
+               Vec3d(-std::numeric_limits<double>::infinity())};
+    for (Vec3d& p : draft_.positions) p *= draft_.metres_per_unit;
+    for (std::size_t i = 0; i < draft_.triangles.size(); ++i) {
+      if (i % kItemsPerPoll == 0 && !diagnostics_.may_go_on()) return false;
+      for (const std::uint32_t id : draft_.triangles[i]) {
+        const Vec3d& p = draft_.positions[id];
+        bounds_.lo = glm::min(bounds_.lo, p);
+        bounds_.hi = glm::max(bounds_.hi, p);
+      }
+    }
+    const Vec3d far = glm::max(glm::abs(bounds_.lo), glm::abs(bounds_.hi));
+    if (far.x <= limit && far.y <= limit && far.z <= limit) return true;
+    return diagnostics_.fail(ImportErrorCode::kCoordinateTooLarge,
+                             "a coordinate is too large after scaling", report_.root_file, "",
+                             "use a larger unit");
+  }
+
+  // A format that stores floats has lost its digits before we could re-centre.
+  void warn_about_digits() {
+    const Vec3d far = glm::max(glm::abs(bounds_.lo), glm::abs(bounds_.hi));
+    const Vec3d size = bounds_.hi - bounds_.lo;
+    const double largest_side = std::max({size.x, size.y, size.z});
+    const double spacing = std::max({far.x, far.y, far.z}) * 1.2e-7;
+    if (!draft_.single_precision || spacing * 1e4 < largest_side) return;
+    diagnostics_.warn(ImportWarningCode::kCoarseCoordinates,
+                      "the scene lies so far from its origin that single-precision coordinates "
+                      "resolve less than 1/10000 of its size",
+                      report_.root_file);
+  }
+
+  // Unused positions may be anything: they are not looked at, and not kept finite for anybody.
+  bool round_positions() {
+    std::vector<Vec3f>& positions = scene_.mesh.positions;
+    positions.resize(draft_.positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      if (i % kItemsPerPoll == 0 && !diagnostics_.may_go_on()) return false;
+      positions[i] = Vec3f(draft_.positions[i] - scene_.origin);
+    }
+    return true;
+  }
+
+  bool drop_flat_triangles() {
+    TriangleMesh& mesh = scene_.mesh;
+    const bool with_normals = !draft_.corner_normals.empty();
+    std::size_t kept = 0;
+    std::uint64_t collapsed = 0;
+    for (std::size_t i = 0; i < draft_.triangles.size(); ++i) {
+      if (i % kItemsPerPoll == 0 && !diagnostics_.may_go_on()) return false;
+      const auto t = draft_.triangles[i];
+      if (has_zero_area(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]])) {
+        collapsed += had_area(t) ? 1U : 0U;
+        continue;
+      }
+      for (const std::uint32_t id : t) scene_.bounds.grow(mesh.positions[id]);
+      draft_.triangles[kept] = t;
+      draft_.material_ids[kept] = draft_.material_ids[i];
+      if (with_normals) draft_.corner_normals[kept] = usable(draft_.corner_normals[i]);
+      ++kept;
+    }
+    report_flat(draft_.triangles.size() - kept, collapsed);
+    draft_.positions = {};
+    draft_.triangles.resize(kept);
+    draft_.material_ids.resize(kept);
+    if (with_normals) draft_.corner_normals.resize(kept);
+    mesh.triangles = std::move(draft_.triangles);
+    mesh.material_ids = std::move(draft_.material_ids);
+    mesh.corner_normals = std::move(draft_.corner_normals);
+    return kept > 0 || empty();
+  }
+
+  // Up to the rounding of double; the question is only which warning to give.
+  [[nodiscard]] bool had_area(const std::array<std::uint32_t, 3>& t) const {
+    const Vec3d u = draft_.positions[t[1]] - draft_.positions[t[0]];
+    const Vec3d v = draft_.positions[t[2]] - draft_.positions[t[0]];
+    return length(cross(u, v)) > 1e-12 * length(u) * length(v);
+  }
+
+  // A normal of length 0 says nothing: the corner takes the normal of the triangle.
+  std::array<std::uint32_t, 3> usable(std::array<std::uint32_t, 3> ids) {
+    for (std::uint32_t& id : ids) {
+      if (id == kNoNormal || draft_.normals[id] != Vec3f(0.0F)) continue;
+      id = kNoNormal;
+      diagnostics_.warn(ImportWarningCode::kInvalidNormal,
+                        "normals of length 0 are replaced by those of the triangles",
+                        report_.root_file);
+    }
+    return ids;
+  }
+
+  void report_flat(std::uint64_t flat, std::uint64_t collapsed) {
+    report_.zero_area_triangles = flat;
+    if (flat > collapsed) {
+      diagnostics_.warn(ImportWarningCode::kZeroAreaTriangles,
+                        "triangles without area cannot be hit and are dropped", report_.root_file,
+                        "", flat - collapsed);
+    }
+    if (collapsed > 0) {
+      diagnostics_.warn(ImportWarningCode::kCollapsedTriangles,
+                        "triangles too small for single precision lost their area and are dropped",
+                        report_.root_file, "", collapsed);
+    }
+  }
+
+  void finish_materials() {
+    const MaterialTable& table = draft_.materials;
+    used_.assign(table.size(), false);
+    for (const std::uint32_t id : scene_.mesh.material_ids) used_[id] = true;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const Material& material = table.materials[i];
+      if (used_[i] && !table.defined[i]) warn_undefined(material.name);
+      if (used_[i] && largest_albedo(material) > 1.0001F) {
+        diagnostics_.warn(ImportWarningCode::kNotConserving,
+                          "material " + in_quotes(material.name) +
+                              " reflects more than it receives: diffuse + specular is above 1",
+                          report_.root_file);
+      }
+    }
+    scene_.materials = std::move(draft_.materials.materials);
+  }
+
+  void warn_undefined(const std::string& name) {
+    if (name == kDefaultMaterialName) {
+      diagnostics_.warn(ImportWarningCode::kDefaultMaterial,
+                        "faces without a material are diffuse grey", report_.root_file);
+    } else {
+      diagnostics_.warn(ImportWarningCode::kUnknownMaterial,
+                        "material " + in_quotes(name) + " is not defined and becomes diffuse grey",
+                        report_.root_file);
+    }
+  }
+
+  bool finish_lights() {
+    for (DraftLight& light : draft_.lights) {
+      const Rgb intensity(light.intensity);
+      if (intensity == Rgb(0.0F)) {
+        diagnostics_.warn(ImportWarningCode::kZeroLight, "point lights without power are dropped");
+        continue;
+      }
+      const Vec3d p = light.position * draft_.metres_per_unit - scene_.origin;
+      if (!in_range(p)) return out_of_range("light " + in_quotes(light.name));
+      scene_.point_lights.push_back({std::move(light.name), Vec3f(p), intensity});
+    }
+    return true;
+  }
+
+  bool finish_cameras() {
+    for (DraftCamera& camera : draft_.cameras) {
+      const Vec3d eye = camera.eye * draft_.metres_per_unit;
+      auto made = make_camera(std::move(camera.name), eye, camera.forward, camera.up,
+                              camera.fov_y_rad, scene_.origin);
+      if (!made || !in_range(eye - scene_.origin)) return out_of_range("a camera");
+      scene_.cameras.push_back(std::move(*made));
+    }
+    if (scene_.cameras.empty()) scene_.cameras.push_back(default_camera());
+    return true;
+  }
+
+  // From the front, a little from the right and above, with all of the bounding sphere in view.
+  Camera default_camera() {
+    diagnostics_.warn(ImportWarningCode::kDefaultCamera,
+                      "the scene names no camera: the default one frames all of it",
+                      report_.root_file);
+    const Vec3d lo(scene_.bounds.lo);
+    const Vec3d hi(scene_.bounds.hi);
+    const Vec3d centre = 0.5 * (lo + hi);
+    const double distance = 0.5 * length(hi - lo) / std::sin(0.5 * kDefaultFovRad) * 1.02;
+    const Vec3d towards_eye = normalize(Vec3d(0.45, 0.35, 1.0));
+    return *make_camera("default", centre + distance * towards_eye, -towards_eye,
+                        Vec3d(0.0, 1.0, 0.0), kDefaultFovRad, Vec3d(0.0));
+  }
+
+  bool finish_background() {
+    if (draft_.background) scene_.background = Rgb(*draft_.background);
+    const bool lit = !scene_.point_lights.empty() || any_emission();
+    if (lit || scene_.background != Rgb(0.0F)) return true;
+    if (draft_.background) {
+      diagnostics_.warn(ImportWarningCode::kNoLight,
+                        "nothing in the scene gives light: the picture will be black");
+      return true;
+    }
+    scene_.background = Rgb(kDefaultBackground);
+    diagnostics_.warn(ImportWarningCode::kDefaultBackground,
+                      "nothing in the scene gives light: a grey background of 0.8 lights it",
+                      report_.root_file);
+    return true;
+  }
+
+  [[nodiscard]] bool any_emission() const {
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      if (used_[i] && scene_.materials[i].emission != Rgb(0.0F)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool in_range(const Vec3d& p) const {
+    const double limit = 2.0 * diagnostics_.limits().max_coordinate;
+    return std::abs(p.x) <= limit && std::abs(p.y) <= limit && std::abs(p.z) <= limit;
+  }
+
+  bool out_of_range(const std::string& what) {
+    return diagnostics_.fail(ImportErrorCode::kCoordinateTooLarge,
+                             "the position of " + what + " is out of range", report_.root_file);
+  }
+
+  SceneDraft& draft_;
+  Diagnostics& diagnostics_;
+  Scene& scene_;
+  ImportReport& report_;
+  Bounds3d bounds_{};
+  std::vector<bool> used_;
+};
+
+}  // namespace
+
+bool finish_scene(SceneDraft&& draft, Diagnostics& diagnostics, Scene& scene,
+                  ImportReport& report) {
+  return Finisher(draft, diagnostics, scene, report).run();
+}
+
+}  // namespace raykiln::render::io

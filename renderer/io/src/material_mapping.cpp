@@ -1,0 +1,72 @@
+#include "material_mapping.hpp"
+
+#include <algorithm>
+
+namespace raykiln::render::io {
+namespace {
+
+// Lets the share `t` of the light through without a change of direction other than by refraction:
+// the opaque lobes keep 1 - t, the sharp lobe gets t * tint and transmits.
+void let_through(Material& material, double t, const Rgbd& tint) {
+  const auto keep = static_cast<float>(1.0 - t);
+  material.diffuse *= keep;
+  material.specular = material.specular * keep + Rgb(tint * t);
+  material.transparent = static_cast<float>(t);
+}
+
+}  // namespace
+
+Material to_material(const MtlMaterial& mtl) {
+  Material material;
+  material.name = mtl.name;
+  material.diffuse = Rgb(mtl.kd);
+  const bool has_highlight = mtl.illum >= 2;  // 0: colour only, 1: Lambert
+  material.specular = has_highlight ? Rgb(mtl.ks) : Rgb(0.0F);
+  material.specular_exp = mtl.ns;
+  material.emission = Rgb(mtl.ke);
+  const bool glass = mtl.illum == 4 || mtl.illum == 6 || mtl.illum == 7 || mtl.illum == 9;
+  const double t = 1.0 - mtl.opacity.value_or(glass ? 0.0 : 1.0);
+  if (t > 0.0) {
+    material.specular_exp = std::max(mtl.ns, kPolishedExponent);
+    material.index_of_refraction = static_cast<float>(mtl.ni.value_or(glass ? 1.5 : 1.0));
+    let_through(material, t, mtl.tf);
+  }
+  return material;
+}
+
+double exponent_of_roughness(double roughness) {
+  const double r4 = roughness * roughness * roughness * roughness;
+  if (r4 * kMaxExponent <= 0.5) return kMaxExponent;
+  return std::clamp((2.0 / r4 - 2.0) / 4.0, 0.0, kMaxExponent);
+}
+
+Material to_material(const GltfMaterial& gltf) {
+  const double m = gltf.metallic;
+  const double dielectric = 1.0 - m;
+  const double at_normal = (gltf.ior - 1.0) / (gltf.ior + 1.0);
+  const Rgbd f0 =
+      glm::min(Rgbd(at_normal * at_normal * gltf.specular) * gltf.specular_color, Rgbd(1.0));
+  const double through = gltf.transmission;
+  Material material;
+  material.name = gltf.name;
+  material.diffuse = Rgb(dielectric * (1.0 - through) * (1.0 - f0) * gltf.base_color);
+  material.specular = Rgb(m * gltf.base_color +
+                          dielectric * ((1.0 - through) * f0 + through * gltf.base_color));
+  material.transparent = static_cast<float>(dielectric * through);
+  material.specular_exp = exponent_of_roughness(gltf.roughness);
+  if (through > 0.0) material.index_of_refraction = static_cast<float>(gltf.ior);
+  material.emission = Rgb(gltf.emissive * gltf.emissive_strength);
+  if (gltf.alpha < 1.0) {
+    let_through(material, 1.0 - gltf.alpha, Rgbd(1.0));
+    material.specular_exp = std::max(material.specular_exp, kPolishedExponent);
+    material.index_of_refraction = 1.0F;  // coverage, not a body of glass
+  }
+  return material;
+}
+
+float largest_albedo(const Material& material) {
+  const Rgb sum = material.diffuse + material.specular;
+  return std::max({sum.x, sum.y, sum.z});
+}
+
+}  // namespace raykiln::render::io

@@ -1,0 +1,53 @@
+// From the parameters of file formats to those of raykiln. The reasons are in the module's README.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "raykiln/scene/scene.hpp"
+
+namespace raykiln::render::io {
+
+/// Sharp enough to look like a polished surface, broad enough to be sampled well.
+inline constexpr double kPolishedExponent = 1e5;
+inline constexpr double kMaxExponent = 1e10;
+
+/// What an MTL file says of one material.
+struct MtlMaterial {
+  std::string name;
+  Rgbd kd{0.8};
+  Rgbd ks{0.0};
+  Rgbd ke{0.0};
+  Rgbd tf{1.0};
+  double ns = 10.0;
+  std::optional<double> ni;
+  std::optional<double> opacity;  ///< d, or 1 - Tr
+  int illum = 2;
+};
+[[nodiscard]] Material to_material(const MtlMaterial& mtl);
+
+/// What glTF's metallic-roughness model and the material extensions say of one material.
+struct GltfMaterial {
+  std::string name;
+  Rgbd base_color{1.0};
+  double alpha = 1.0;  ///< coverage; 1 unless the alpha mode is BLEND or MASK
+  double metallic = 1.0;
+  double roughness = 1.0;
+  Rgbd emissive{0.0};
+  double emissive_strength = 1.0;
+  double ior = 1.5;
+  double transmission = 0.0;
+  double specular = 1.0;
+  Rgbd specular_color{1.0};
+};
+[[nodiscard]] Material to_material(const GltfMaterial& gltf);
+
+/// Exponent of the lobe about the mirror direction that looks like roughness r:
+/// a Blinn-Phong lobe about the half vector with exponent 2/r^4 - 2 (alpha = r^2) is about four
+/// times as broad about the mirror direction. In [0, kMaxExponent].
+[[nodiscard]] double exponent_of_roughness(double roughness);
+
+/// Largest component of diffuse + specular.
+[[nodiscard]] float largest_albedo(const Material& material);
+
+}  // namespace raykiln::render::io

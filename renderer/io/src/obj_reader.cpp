@@ -1,0 +1,205 @@
+#include "obj_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "line_reader.hpp"
+#include "mtl_reader.hpp"
+#include "obj_faces.hpp"
+#include "scene_file_names.hpp"
+#include "text_numbers.hpp"
+
+namespace raykiln::render::io {
+namespace {
+
+constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFU;
+
+class ObjReader {
+ public:
+  ObjReader(const SceneFiles& files, SceneFile& file, const std::string& name,
+            Diagnostics& diagnostics, SceneDraft& draft)
+      : files_(files),
+        name_(name),
+        diagnostics_(diagnostics),
+        draft_(draft),
+        lines_(file, name, diagnostics),
+        faces_(lines_, diagnostics, draft) {}
+
+  bool read() {
+    std::string_view text;
+    while (lines_.next(text)) {
+      if (!statement(text)) return false;
+    }
+    if (diagnostics_.failed() || !faces_.finish() || !read_libraries()) return false;
+    report_unused();
+    return true;
+  }
+
+ private:
+  bool statement(std::string_view text) {
+    const std::string_view word = take_word(text);
+    if (word.empty() || word[0] == '#') return true;
+    if (word == "v") return vertex(text);
+    if (word == "f" || word == "fo") return face(text);
+    if (word == "vn") return normal(text);
+    if (word == "vt" || word == "g" || word == "o" || word == "s") return true;
+    if (word == "usemtl") return use_material(text);
+    if (word == "mtllib") return use_library(text);
+    return other(word);
+  }
+
+  bool other(std::string_view word) {
+    if (word == "l" || word == "p") {
+      warn(ImportWarningCode::kIgnoredElement,
+           word == "l" ? "lines (l) have no surface and are ignored"
+                       : "points (p) have no surface and are ignored");
+      return true;
+    }
+    const bool text_like = std::all_of(word.begin(), word.end(), [](char c) {
+      return static_cast<unsigned char>(c) >= 0x20 && c != 0x7F;
+    });
+    if (!text_like) {
+      return lines_.fail(ImportErrorCode::kSyntax, "the line is not text",
+                         "check that this is an OBJ file");
+    }
+    warn(ImportWarningCode::kUnknownStatement, "the statement " + in_quotes(word) + " is ignored");
+    return true;
+  }
+
+  bool three_numbers(std::string_view& text, std::string_view what, Vec3d& v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const NumberStatus status = take_number(text, v[axis]);
+      if (status == NumberStatus::kOk) continue;
+      if (status == NumberStatus::kMissing) {
+        return lines_.fail(ImportErrorCode::kSyntax,
+                           "the " + std::string(what) + " has fewer than 3 numbers");
+      }
+      const std::string_view word = take_word(text);
+      if (status == NumberStatus::kNotFinite) {
+        return lines_.fail(ImportErrorCode::kNotFinite,
+                           "the " + std::string(what) + " is not finite (" + in_quotes(word) + ")",
+                           "remove NaN, infinite and overflowing numbers");
+      }
+      return lines_.fail(ImportErrorCode::kSyntax, "cannot read the number " + in_quotes(word));
+    }
+    return true;
+  }
+
+  bool vertex(std::string_view text) {
+    Vec3d p;
+    if (!three_numbers(text, "vertex", p)) return false;
+    const double limit = diagnostics_.limits().max_coordinate;
+    if (std::abs(p.x) > limit || std::abs(p.y) > limit || std::abs(p.z) > limit) {
+      return lines_.fail(ImportErrorCode::kCoordinateTooLarge,
+                         "a coordinate is larger than the limit of 1e" +
+                             std::to_string(std::lround(std::log10(limit))),
+                         "use a larger unit");
+    }
+    if (!room(draft_.positions.size(), "vertices")) return false;
+    draft_.positions.push_back(p);
+    has_extra_ = has_extra_ || !trimmed(text).empty();
+    return true;
+  }
+
+  bool normal(std::string_view text) {
+    Vec3d n;
+    if (!three_numbers(text, "normal", n)) return false;
+    if (!room(draft_.normals.size(), "normals")) return false;
+    const double longest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+    if (longest > 0.0) n = normalize(n / longest);  // by parts: the square may overflow
+    draft_.normals.emplace_back(n);
+    return true;
+  }
+
+  bool room(std::size_t have, std::string_view what) {
+    const std::uint64_t limit = diagnostics_.limits().max_vertices;
+    if (have < limit) return true;
+    return lines_.fail(ImportErrorCode::kLimitExceeded,
+                       "more than " + std::to_string(limit) + " " + std::string(what));
+  }
+
+  bool face(std::string_view text) {
+    if (material_ == kNoMaterial) material_ = draft_.materials.intern(kDefaultMaterialName);
+    return faces_.add(text, material_);
+  }
+
+  bool use_material(std::string_view text) {
+    const std::string material = clean_text(trimmed(text), kMaxNameBytes);
+    if (material.empty()) {
+      material_ = kNoMaterial;
+      warn(ImportWarningCode::kUnknownMaterial, "usemtl without a name: the default is used");
+      return true;
+    }
+    if (!draft_.materials.contains(material) &&
+        draft_.materials.size() >= diagnostics_.limits().max_materials) {
+      return lines_.fail(ImportErrorCode::kLimitExceeded, "too many materials");
+    }
+    material_ = draft_.materials.intern(material);
+    return true;
+  }
+
+  bool use_library(std::string_view text) {
+    if (++library_statements_ > diagnostics_.limits().max_mtl_files) {
+      return lines_.fail(ImportErrorCode::kLimitExceeded, "too many mtllib statements");
+    }
+    const std::string_view wanted = trimmed(text);
+    if (const auto whole = find_beside(files_, name_, wanted)) return add_library(*whole);
+    while (true) {  // several names in one statement
+      const std::string_view word = take_word(text);
+      if (word.empty()) return true;
+      if (const auto found = find_beside(files_, name_, word)) {
+        if (!add_library(*found)) return false;
+      } else {
+        warn(ImportWarningCode::kMissingMaterialFile,
+             "the material file " + in_quotes(wanted) + " is not part of the upload");
+        return true;
+      }
+    }
+  }
+
+  bool add_library(const std::string& library) {
+    if (std::find(libraries_.begin(), libraries_.end(), library) != libraries_.end()) return true;
+    libraries_.push_back(library);
+    return true;
+  }
+
+  bool read_libraries() {
+    for (const std::string& library : libraries_) {
+      if (!read_mtl(files_, library, diagnostics_, draft_)) return false;
+    }
+    return true;
+  }
+
+  void report_unused() {
+    if (!has_extra_) return;
+    diagnostics_.warn(ImportWarningCode::kIgnoredFeature,
+                      "vertex weights and vertex colours are ignored", name_);
+  }
+
+  void warn(ImportWarningCode code, const std::string& message) {
+    diagnostics_.warn(code, message, name_, line_text(lines_.line()));
+  }
+
+  const SceneFiles& files_;
+  std::string name_;
+  Diagnostics& diagnostics_;
+  SceneDraft& draft_;
+  LineReader lines_;
+  ObjFaces faces_;
+  std::uint32_t material_ = kNoMaterial;
+  std::vector<std::string> libraries_;
+  std::size_t library_statements_ = 0;
+  bool has_extra_ = false;
+};
+
+}  // namespace
+
+bool read_obj(const SceneFiles& files, const std::string& name, Diagnostics& diagnostics,
+              SceneDraft& draft) {
+  const auto file = open_limited(files, name, diagnostics.limits().max_file_bytes, diagnostics);
+  return file != nullptr && ObjReader(files, *file, name, diagnostics, draft).read();
+}
+
+}  // namespace raykiln::render::io

@@ -1,0 +1,68 @@
+// The scene while it is being read: double precision, file units, nothing validated as a whole yet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raykiln/scene/scene.hpp"
+
+namespace raykiln::render::io {
+
+inline constexpr std::size_t kMaxNameBytes = 1024;  ///< of a material's name; the rest is cut
+inline constexpr std::string_view kDefaultMaterialName = "default";
+
+struct DraftLight {
+  std::string name;
+  Vec3d position{0.0};
+  Rgbd intensity{0.0};  ///< W sr^-1
+};
+
+struct DraftCamera {
+  std::string name;
+  Vec3d eye{0.0};
+  Vec3d forward{0.0, 0.0, -1.0};  ///< any length > 0
+  Vec3d up{0.0, 1.0, 0.0};        ///< not parallel to forward
+  double fov_y_rad = 0.7;
+};
+
+/// Materials are known by name: a face may use one before (or without) its definition.
+class MaterialTable {
+ public:
+  /// Index of the material called `name`; makes an undefined one when there is none.
+  std::uint32_t intern(std::string_view name);
+  [[nodiscard]] bool contains(std::string_view name) const;
+  [[nodiscard]] std::size_t size() const { return materials.size(); }
+
+  std::vector<Material> materials;
+  std::vector<bool> defined;  ///< false: used by a face, never described
+
+ private:
+  std::map<std::string, std::uint32_t, std::less<>> by_name_;
+};
+
+/// What faces without a described material look like: a light grey diffuse surface.
+[[nodiscard]] Material default_material(std::string_view name);
+
+struct SceneDraft {
+  std::vector<Vec3d> positions;
+  std::vector<Vec3f> normals;  ///< unit
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<std::uint32_t, 3>> corner_normals;  ///< empty until one has a normal
+  std::vector<std::uint32_t> material_ids;
+  MaterialTable materials;
+  std::vector<DraftLight> lights;
+  std::vector<DraftCamera> cameras;
+  std::optional<Rgbd> background;  ///< set by a sidecar only
+  double metres_per_unit = 1.0;
+  bool single_precision = false;  ///< the file format stores positions as float
+
+  void add_triangle(const std::array<std::uint32_t, 3>& corners,
+                    const std::array<std::uint32_t, 3>& corner_normal_ids, std::uint32_t material);
+};
+
+}  // namespace raykiln::render::io

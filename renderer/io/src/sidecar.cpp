@@ -1,0 +1,150 @@
+#include "sidecar.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "material_mapping.hpp"
+#include "raykiln/scene/camera.hpp"
+#include "scene_file_names.hpp"
+
+namespace raykiln::render::io {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr double kLargestWeight = 1e6;
+constexpr double kSmallestAngleDeg = 1e-4;
+constexpr double kLargestAngleDeg = 179.9;
+
+Vec3d required_point(const JsonAt& at, const char* key) {
+  if (!at.has(key)) {
+    at.fail(ImportErrorCode::kMissingField, "the field " + in_quotes(key) + " is missing");
+    return Vec3d(0.0);
+  }
+  const double limit = at.diagnostics().limits().max_coordinate;
+  return at.vec3_in(key, Vec3d(0.0), -limit, limit);
+}
+
+bool read_camera(const JsonAt& at, std::vector<DraftCamera>& cameras) {
+  if (!at.expect_object() || !at.only({"name", "eye", "look_at", "up", "fov_deg"})) return false;
+  DraftCamera camera;
+  camera.name = clean_text(at.text_or("name", "camera " + std::to_string(cameras.size() + 1)));
+  camera.eye = required_point(at, "eye");
+  camera.forward = required_point(at, "look_at") - camera.eye;
+  camera.up = at.vec3_or("up", Vec3d(0.0, 1.0, 0.0));
+  camera.fov_y_rad = at.number_in("fov_deg", 40.0, kSmallestAngleDeg, kLargestAngleDeg) * kDegree;
+  if (at.diagnostics().failed()) return false;
+  if (!make_camera("", camera.eye, camera.forward, camera.up, camera.fov_y_rad, Vec3d(0.0))) {
+    return at.fail(ImportErrorCode::kInvalidValue,
+                   "eye and look_at coincide, or up points along the view",
+                   "choose another look_at or up");
+  }
+  cameras.push_back(std::move(camera));
+  return true;
+}
+
+bool read_cameras(const JsonAt& root, SceneDraft& draft) {
+  std::vector<DraftCamera> cameras;
+  if (const auto one = root.find("camera"); one && !read_camera(*one, cameras)) return false;
+  if (const auto many = root.array("cameras")) {
+    if (many->size() > root.diagnostics().limits().max_cameras) {
+      return many->fail(ImportErrorCode::kLimitExceeded, "too many cameras");
+    }
+    for (std::size_t i = 0; i < many->size(); ++i) {
+      if (!read_camera(many->element(i), cameras)) return false;
+    }
+  }
+  draft.cameras.insert(draft.cameras.begin(), cameras.begin(), cameras.end());
+  return !root.diagnostics().failed();
+}
+
+bool read_lights(const JsonAt& root, SceneDraft& draft) {
+  const auto lights = root.array("point_lights");
+  if (!lights) return !root.diagnostics().failed();
+  const ImportLimits& limits = root.diagnostics().limits();
+  if (lights->size() > limits.max_point_lights) {
+    return lights->fail(ImportErrorCode::kLimitExceeded, "too many point lights");
+  }
+  for (std::size_t i = 0; i < lights->size(); ++i) {
+    const JsonAt at = lights->element(i);
+    if (!at.expect_object() || !at.only({"name", "position", "intensity"})) return false;
+    DraftLight light;
+    light.name = clean_text(at.text_or("name", "light " + std::to_string(i + 1)));
+    light.position = required_point(at, "position");
+    if (!at.has("intensity")) {
+      return at.fail(ImportErrorCode::kMissingField, "the field 'intensity' is missing");
+    }
+    light.intensity = at.vec3_in("intensity", Vec3d(0.0), 0.0, limits.max_radiance);
+    if (root.diagnostics().failed()) return false;
+    draft.lights.push_back(std::move(light));
+  }
+  return true;
+}
+
+bool override_material(const JsonAt& at, Material& material) {
+  if (!at.expect_object() || !at.only({"diffuse", "specular", "transparent", "specular_exp",
+                                       "index_of_refraction", "emission"})) {
+    return false;
+  }
+  const double bright = at.diagnostics().limits().max_radiance;
+  const auto color = [&](const char* key, Rgb& value, double most) {
+    if (at.has(key)) value = Rgb(at.vec3_in(key, Vec3d(0.0), 0.0, most));
+  };
+  const auto number = [&](const char* key, auto& value, double least, double most) {
+    if (at.has(key)) {
+      value = static_cast<std::decay_t<decltype(value)>>(at.number_in(key, least, least, most));
+    }
+  };
+  color("diffuse", material.diffuse, kLargestWeight);
+  color("specular", material.specular, kLargestWeight);
+  color("emission", material.emission, bright);
+  number("transparent", material.transparent, 0.0, 1.0);
+  number("specular_exp", material.specular_exp, 0.0, 1e12);
+  number("index_of_refraction", material.index_of_refraction, 1e-3, 1e20);
+  return !at.diagnostics().failed();
+}
+
+bool read_materials(const JsonAt& root, SceneDraft& draft) {
+  const auto materials = root.object("materials");
+  if (!materials) return !root.diagnostics().failed();
+  for (const std::string& key : materials->keys()) {
+    const JsonAt at = materials->member(key);
+    Material ignored;
+    if (!draft.materials.contains(key)) {
+      // Still read, so that mistakes in it are found.
+      if (!override_material(at, ignored)) return false;
+      at.warn(ImportWarningCode::kUnknownMaterial, "no face uses a material called " + in_quotes(key));
+      continue;
+    }
+    const std::uint32_t id = draft.materials.intern(key);
+    if (!override_material(at, draft.materials.materials[id])) return false;
+    draft.materials.defined[id] = true;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<JsonDocument> read_sidecar(const SceneFiles& files, const std::string& name,
+                                         Diagnostics& diagnostics) {
+  const auto text = read_whole(files, name, diagnostics.limits().max_json_bytes, diagnostics);
+  if (!text) return std::nullopt;
+  auto document = JsonDocument::parse(*text, name, diagnostics);
+  if (!document || !document->root().expect_object()) return std::nullopt;
+  if (!document->root().only({"$schema", "scene", "scale", "camera", "cameras", "point_lights",
+                              "background", "materials"})) {
+    return std::nullopt;
+  }
+  return document;
+}
+
+bool apply_sidecar(const JsonAt& root, SceneDraft& draft) {
+  draft.metres_per_unit = root.number_in("scale", 1.0, 1e-12, 1e12);
+  if (root.has("background")) {
+    draft.background = root.vec3_in("background", Vec3d(0.0), 0.0,
+                                    root.diagnostics().limits().max_radiance);
+  }
+  return !root.diagnostics().failed() && read_cameras(root, draft) && read_lights(root, draft) &&
+         read_materials(root, draft);
+}
+
+}  // namespace raykiln::render::io
