@@ -12,13 +12,14 @@
 
 #include "raykiln/accel/kdtree.hpp"
 #include "raykiln/image/film.hpp"
+#include "raykiln/integrator/camera_ray.hpp"    // PixelMode
+#include "raykiln/integrator/render_stats.hpp"  // RenderStats
 #include "raykiln/scene/scene.hpp"
+#include "raykiln/shading/bsdf.hpp"  // DirectionSampling
 
 namespace raykiln::render {
 
 enum class LightModel : std::uint8_t { kSeed };
-enum class PixelMode : std::uint8_t { kRandom, kCentre };
-enum class DirectionSampling : std::uint8_t { kBsdf, kUniformSphere };
 
 struct RenderSettings {
   int width = 640, height = 480;
@@ -33,6 +34,15 @@ struct RenderSettings {
   bool emitter_sampling = true;  ///< with multiple importance sampling
   Traversal traversal = Traversal::kTree;
 };
+
+/// Limits that settings_error() checks.
+inline constexpr int kLargestSide = 32768;       ///< pixels
+inline constexpr int kLargestDepth = 4096;       ///< reflections after the first hit
+inline constexpr int kMostBranches = 64;         ///< rays shot from each hit
+inline constexpr double kMostRaysOfPath = 65536; ///< 1 + b + b^2 + ... of the seed's tree
+
+/// Bytes that a film of this size takes; saturates. What a job must be checked against before.
+[[nodiscard]] std::uint64_t film_bytes(int width, int height);
 
 /// First thing that is wrong with the settings for this scene, or nothing.
 [[nodiscard]] std::optional<std::string> settings_error(const RenderSettings& settings,
@@ -49,15 +59,6 @@ class PreparedScene;
                                                              const BuildParams& params,
                                                              TaskRunner& runner);
 
-/// Counts of one task; sums over tasks do not depend on how the work was cut, `seconds` apart.
-struct RenderStats {
-  std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
-  std::uint64_t paths = 0, non_finite = 0, negative = 0, truncated = 0;
-  std::uint64_t closest_calls = 0;            ///< calls of closest_hits
-  std::uint64_t short_calls_while_many_live = 0;  ///< fewer than 1024 rays although as many paths lived
-  TraversalCounters traversal;
-};
-
 struct TileResult {
   PixelRect rect;
   std::vector<BlockResult> blocks;
@@ -72,7 +73,7 @@ struct TileResult {
                                      const PixelRect& rect, std::span<const SampleBlock> blocks,
                                      std::stop_token stop);
 
-/// Folds all blocks of the result, in their order.
+/// Folds all blocks of the result, in their order; nothing of one that was stopped.
 void merge(Film& film, const TileResult& result);
 
 }  // namespace raykiln::render

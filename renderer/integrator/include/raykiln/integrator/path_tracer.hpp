@@ -1,0 +1,75 @@
+// Radiance along many camera paths at once, advanced together bounce by bounce.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stop_token>
+
+#include "raykiln/accel/kdtree.hpp"
+#include "raykiln/integrator/camera_ray.hpp"
+#include "raykiln/integrator/render_stats.hpp"
+#include "raykiln/scene/scene.hpp"
+#include "raykiln/shading/bsdf.hpp"
+#include "raykiln/shading/emitters.hpp"
+
+namespace raykiln::render {
+
+/// What light is carried through. All three outlive the tracer.
+struct TransportScene {
+  const Scene& scene;
+  const KdTree& tree;
+  const Emitters& emitters;
+};
+
+struct PathSettings {
+  std::uint64_t seed = 0;
+  int max_depth = 8;  ///< reflections after the first hit
+  int branches = 1;   ///< rays shot from each hit
+  PixelMode pixel_mode = PixelMode::kRandom;
+  bool emitter_sampling = true;
+  BsdfModel bsdf;
+  Traversal traversal = Traversal::kTree;
+};
+
+/// Pixel and sample index: with the seed, all that the numbers of a path depend on.
+struct PathStart {
+  int x = 0, y = 0;
+  std::uint64_t sample = 0;
+};
+
+/// The two sums are kept apart so that each is added up in an order that only the path decides.
+struct PathResult {
+  Rgbd emitted{0.0};  ///< light found by following the path
+  Rgbd direct{0.0};   ///< light found by shadow rays
+  bool truncated = false;  ///< could have gone on at max_depth
+  [[nodiscard]] Rgbd radiance() const { return emitted + direct; }
+};
+
+/// Rays of the tree that one camera ray can grow with these settings: 1 + b + b^2 + ... + b^depth;
+/// infinity rather than overflow.
+[[nodiscard]] double rays_of_one_path(int branches, int max_depth);
+
+/// Owns the scratch memory of one thread; reuse it for all calls of a task. A result depends on
+/// its PathStart alone, not on the others in the call.
+class PathTracer {
+ public:
+  PathTracer(const TransportScene& scene, const CameraRays& camera, const PathSettings& settings);
+  ~PathTracer();
+  PathTracer(const PathTracer&) = delete;
+  PathTracer& operator=(const PathTracer&) = delete;
+
+  /// Fills results[i] for starts[i]. Returns false, with results unusable, once stop is requested;
+  /// it is polled before every call into the tree.
+  [[nodiscard]] bool trace(std::span<const PathStart> starts, std::span<PathResult> results,
+                           RenderStats& stats, const std::stop_token& stop);
+
+ private:
+  struct Scratch;
+  TransportScene scene_;
+  CameraRays camera_;
+  PathSettings settings_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace raykiln::render

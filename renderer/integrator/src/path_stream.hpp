@@ -1,0 +1,37 @@
+// Paths that are under way: rays apart from the rest, as the tree wants them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "raykiln/math/ray.hpp"
+#include "raykiln/sampling/random.hpp"
+
+namespace raykiln::render {
+
+/// What a path carries besides its ray.
+struct PathState {
+  PathKey key;
+  Rgbd throughput{1.0};
+  double pdf = 0.0;        ///< of the ray's direction times the rays shot with it, sr^-1
+  std::uint64_t node = 0;  ///< number of the branch among those of its bounce
+  std::uint32_t slot = 0;  ///< index of its PathResult
+  std::uint32_t bounce = 0;  ///< reflections so far
+};
+
+struct PathStream {
+  std::vector<Ray> rays;
+  std::vector<PathState> states;
+
+  [[nodiscard]] std::size_t size() const { return rays.size(); }
+  void push(const Ray& ray, const PathState& state) {
+    rays.push_back(ray);
+    states.push_back(state);
+  }
+  void clear() {
+    rays.clear();
+    states.clear();
+  }
+};
+
+}  // namespace raykiln::render

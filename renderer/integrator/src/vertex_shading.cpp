@@ -1,0 +1,147 @@
+#include "vertex_shading.hpp"
+
+#include <cmath>
+
+#include "raykiln/shading/surface_point.hpp"
+
+namespace raykiln::render {
+namespace {
+
+struct Vertex {
+  SurfacePoint point;
+  Bsdf bsdf;
+  VertexKey key;
+};
+
+bool finite(const Rgbd& c) {
+  return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
+bool zero(const Rgb& c) { return c == Rgb(0.0F); }
+
+/// Density over solid angle of a density over area, seen over `distance2` under `cosine`.
+double solid_angle_pdf(double pdf_area, double distance2, double cosine) {
+  return pdf_area * distance2 / cosine;
+}
+
+class VertexShader {
+ public:
+  VertexShader(const TransportScene& scene, const PathSettings& settings, const PathState& state,
+               ShadingSinks& sinks)
+      : scene_(scene), settings_(settings), state_(state), sinks_(sinks) {}
+
+  /// Emission seen by the path itself, weighted against its being found by a shadow ray.
+  void add_emission(const SurfacePoint& point, const Rgb& radiance, const Ray& ray, float t) {
+    if (zero(radiance)) return;
+    double weight = 1.0;
+    if (state_.bounce > 0 && settings_.emitter_sampling && scene_.emitters.has_triangles()) {
+      const Vec3d d(ray.d);
+      const double distance2 = static_cast<double>(t) * static_cast<double>(t) * dot(d, d);
+      const double other = solid_angle_pdf(scene_.emitters.pdf_area(radiance), distance2,
+                                           std::abs(dot(point.ng, d)));
+      weight = power_heuristic(state_.pdf, other);
+    }
+    sinks_.results[state_.slot].emitted += state_.throughput * Rgbd(radiance) * weight;
+  }
+
+  /// Point lights: I cos / r^2 times f, all of them, as the seed goes through them.
+  void light_from_points(const Vertex& vertex) {
+    for (const PointLight& light : scene_.emitters.point_lights()) {
+      const Vec3d way = Vec3d(light.position) - vertex.point.p;
+      const double distance2 = dot(way, way);
+      if (!(distance2 > 0.0)) continue;
+      const Vec3d wi = way / std::sqrt(distance2);
+      const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
+      const Rgbd arriving = Rgbd(light.intensity) / distance2;
+      queue(vertex, wi, light.position, state_.throughput * value.f_cos * arriving);
+    }
+  }
+
+  /// One point on an emitting triangle, weighted against the path's own rays finding it.
+  void light_from_emitters(const Vertex& vertex) {
+    const EmitterSample sample = scene_.emitters.sample(scene_.scene, vertex.key);
+    const Vec3d way = sample.point.p - vertex.point.p;
+    const double distance2 = dot(way, way);
+    const Vec3d wi = way / std::sqrt(distance2);
+    const double cosine = std::abs(dot(sample.point.ng, wi));
+    if (!(distance2 > 0.0 && cosine > 0.0)) return;
+    const double pdf = solid_angle_pdf(sample.pdf_area, distance2, cosine);
+    const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
+    if (value.f_cos == Rgbd(0.0)) return;
+    const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
+    queue(vertex, wi, ray_origin(sample.point, -wi),
+          state_.throughput * value.f_cos * sample.radiance * weight);
+  }
+
+  /// The rays that go on from here.
+  void scatter(const Vertex& vertex) {
+    const auto branches = static_cast<std::uint64_t>(settings_.branches);
+    for (std::uint64_t k = 0; k < branches; ++k) {
+      PathState child = state_;
+      child.node = state_.node * branches + k;
+      child.bounce = state_.bounce + 1;
+      const VertexKey key =
+          branches == 1 ? vertex.key : vertex_key(state_.key, child.node, state_.bounce);
+      const BsdfSample sample = sample_bsdf(vertex.bsdf, key);
+      if (sample.lobe == Lobe::kNone) continue;
+      child.throughput *= sample.weight / static_cast<double>(branches);
+      child.pdf = sample.pdf * static_cast<double>(branches);
+      if (!finite(child.throughput)) {
+        // Poisons the sample, which is then dropped, counted and located: never a silent black.
+        sinks_.results[state_.slot].emitted += child.throughput;
+        continue;
+      }
+      Ray ray;
+      ray.o = ray_origin(vertex.point, Vec3d(sample.wi));
+      ray.d = sample.wi;
+      sinks_.next.push(ray, child);
+    }
+  }
+
+ private:
+  void queue(const Vertex& vertex, const Vec3d& wi, const Vec3f& target, const Rgbd& light) {
+    if (light == Rgbd(0.0)) return;
+    sinks_.shadows.push(ray_origin(vertex.point, wi), target, light, state_.slot);
+    if (sinks_.shadows.full()) {
+      sinks_.shadows.flush(scene_.tree, settings_.traversal, sinks_.results, sinks_.stats);
+    }
+  }
+
+  const TransportScene& scene_;
+  const PathSettings& settings_;
+  const PathState& state_;
+  ShadingSinks& sinks_;
+};
+
+}  // namespace
+
+// L_o = L_e + sum over lights of f L cos + the scattered rays. A shadow ray to an emitter stands for
+// one more reflection, so it is sent only where such a ray may be; point lights, which no ray can
+// find, are added at every hit.
+void shade_vertex(const TransportScene& scene, const PathSettings& settings, const Ray& ray,
+                  const PathState& state, const Hit& hit, ShadingSinks& sinks) {
+  VertexShader shader(scene, settings, state, sinks);
+  if (hit.id == kNoHit) {
+    sinks.results[state.slot].emitted += state.throughput * Rgbd(scene.scene.background);
+    return;
+  }
+  const SurfacePoint point =
+      surface_point(scene.scene.mesh, hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v));
+  const Material& material = scene.scene.materials[point.material];
+  shader.add_emission(point, material.emission, ray, hit.t);
+  if (zero(material.diffuse) && zero(material.specular)) return;
+
+  const Vertex vertex{
+      point, make_bsdf(material, Vec3f(point.ng), point.ns, -ray.d, settings.bsdf),
+      vertex_key(state.key, state.node, state.bounce)};
+  shader.light_from_points(vertex);
+  if (state.bounce >= static_cast<std::uint32_t>(settings.max_depth)) {
+    sinks.results[state.slot].truncated = true;
+    return;
+  }
+  if (settings.emitter_sampling && scene.emitters.has_triangles()) {
+    shader.light_from_emitters(vertex);
+  }
+  shader.scatter(vertex);
+}
+
+}  // namespace raykiln::render

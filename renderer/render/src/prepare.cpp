@@ -1,0 +1,19 @@
+#include "prepared_scene.hpp"
+
+namespace raykiln::render {
+
+std::shared_ptr<const PreparedScene> prepare(std::shared_ptr<const Scene> scene,
+                                             std::shared_ptr<const KdTree> tree) {
+  return std::make_shared<const PreparedScene>(std::move(scene), std::move(tree));
+}
+
+// No opacity flags: every triangle blocks shadow rays in the seed's model, and a tree that depends
+// on geometry alone stays valid when a material changes.
+std::shared_ptr<const KdTree> build_scene_tree(const Scene& scene, const BuildParams& params,
+                                               TaskRunner& runner) {
+  return build_kdtree(
+      {.positions = scene.mesh.positions, .triangles = scene.mesh.triangles, .opaque = {}}, params,
+      runner);
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,26 @@
+// A scene with everything that rendering derives from it.
+#pragma once
+
+#include <memory>
+
+#include "raykiln/render/render.hpp"
+#include "raykiln/shading/emitters.hpp"
+
+namespace raykiln::render {
+
+class PreparedScene {
+ public:
+  PreparedScene(std::shared_ptr<const Scene> scene, std::shared_ptr<const KdTree> tree)
+      : scene_(std::move(scene)), tree_(std::move(tree)), emitters_(*scene_) {}
+
+  [[nodiscard]] const Scene& scene() const { return *scene_; }
+  [[nodiscard]] const KdTree& tree() const { return *tree_; }
+  [[nodiscard]] const Emitters& emitters() const { return emitters_; }
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const KdTree> tree_;
+  Emitters emitters_;
+};
+
+}  // namespace raykiln::render

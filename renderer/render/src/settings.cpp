@@ -1,0 +1,51 @@
+#include <cmath>
+#include <limits>
+
+#include "raykiln/integrator/path_tracer.hpp"
+#include "raykiln/render/render.hpp"
+
+namespace raykiln::render {
+namespace {
+
+std::string between(const char* name, long long low, long long high) {
+  return std::string(name) + " must be between " + std::to_string(low) + " and " +
+         std::to_string(high);
+}
+
+}  // namespace
+
+std::uint64_t film_bytes(int width, int height) {
+  if (width <= 0 || height <= 0) return 0;
+  const double bytes = static_cast<double>(width) * height * static_cast<double>(Film::bytes_per_pixel());
+  if (bytes >= 0x1p63) return std::numeric_limits<std::uint64_t>::max();
+  return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
+         Film::bytes_per_pixel();
+}
+
+std::optional<std::string> settings_error(const RenderSettings& settings, const Scene& scene) {
+  const auto cameras = static_cast<long long>(scene.cameras.size());
+  if (settings.width < 1 || settings.width > kLargestSide) return between("width", 1, kLargestSide);
+  if (settings.height < 1 || settings.height > kLargestSide) {
+    return between("height", 1, kLargestSide);
+  }
+  if (settings.camera < 0 || settings.camera >= cameras) {
+    return "camera " + std::to_string(settings.camera) + " does not exist: the scene has " +
+           std::to_string(cameras);
+  }
+  if (settings.max_depth < 0 || settings.max_depth > kLargestDepth) {
+    return between("max_depth", 0, kLargestDepth);
+  }
+  if (settings.branches < 1 || settings.branches > kMostBranches) {
+    return between("branches", 1, kMostBranches);
+  }
+  if (settings.branches > 1 &&
+      rays_of_one_path(settings.branches, settings.max_depth) > kMostRaysOfPath) {
+    return "branches " + std::to_string(settings.branches) + " at max_depth " +
+           std::to_string(settings.max_depth) + " would shoot more than " +
+           std::to_string(static_cast<long long>(kMostRaysOfPath)) +
+           " rays for one sample; lower one of them";
+  }
+  return std::nullopt;
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,46 @@
+#include "raykiln/sampling/warp.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raykiln/math/frame.hpp"
+
+namespace raykiln::render {
+
+double one_minus_cos(const Vec3f& a, const Vec3f& b) {
+  const Vec3d difference = Vec3d(a) - Vec3d(b);
+  return 0.5 * dot(difference, difference);
+}
+
+double sample_one_minus_cos(double u, double exponent) {
+  return std::min(-std::expm1(std::log1p(-u) / (exponent + 1.0)), 1.0 - 0x1p-53);
+}
+
+double cosine_power_pdf(double x, double exponent) {
+  if (!(x < 1.0)) return 0.0;
+  const double power = exponent == 0.0 ? 1.0 : std::exp(exponent * std::log1p(-x));
+  return (exponent + 1.0) / (2.0 * kPi) * power;
+}
+
+Vec3f around_axis(const Vec3f& axis, double x, double v) {
+  const Frame frame(axis);
+  const double sine = std::sqrt(x * (2.0 - x));
+  const double phi = 2.0 * kPi * v;
+  // In double and rounded once: at exponent 1e12 the sine is no more than a few float ulp of 1.
+  return Vec3f(sine * std::cos(phi) * Vec3d(frame.s) + sine * std::sin(phi) * Vec3d(frame.t) +
+               (1.0 - x) * Vec3d(frame.n));
+}
+
+Vec3f sample_uniform_sphere(double u, double v) {
+  const double z = 1.0 - 2.0 * u;
+  const double sine = 2.0 * std::sqrt(u * (1.0 - u));
+  const double phi = 2.0 * kPi * v;
+  return Vec3f(Vec3d(sine * std::cos(phi), sine * std::sin(phi), z));
+}
+
+TrianglePoint sample_uniform_triangle(double u, double v) {
+  const double root = std::sqrt(u);
+  return {.b1 = root * (1.0 - v), .b2 = root * v};
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,73 @@
+// The seed's BSDF at one point, for one direction of view: value, sampling and density.
+#pragma once
+
+#include <cstdint>
+
+#include "raykiln/math/vec.hpp"
+#include "raykiln/sampling/random.hpp"
+#include "raykiln/scene/scene.hpp"
+
+namespace raykiln::render {
+
+/// Uniform sphere is the reference estimator: slow, and hard to get wrong.
+enum class DirectionSampling : std::uint8_t { kBsdf, kUniformSphere };
+
+/// Switches of the light model. The seed samples diffuse reflection with cosine exponent 0.
+struct BsdfModel {
+  DirectionSampling direction_sampling = DirectionSampling::kBsdf;
+  double diffuse_exponent = 0.0;  ///< of the sampling density alone: 0 the seed's, 1 the cosine
+};
+
+/// Probabilities with which sampling picks a lobe; they sum to 1 unless all are 0.
+struct LobeChoice {
+  double specular = 0.0;           ///< else diffuse
+  double diffuse_through = 0.0;    ///< of a diffuse pick: goes to the other side
+  double specular_through = 0.0;   ///< of a specular pick: refracted
+};
+
+/// Above this a lobe is narrower than what a float direction can tell apart.
+inline constexpr double kLargestExponent = 1e15;
+
+/// Everything that depends on the point and wo. All vectors are unit and in world space.
+struct Bsdf {
+  BsdfModel model;
+  Vec3f ng{0.0F};          ///< geometric normal, on the side of wo: decides sides
+  Vec3f n{0.0F};           ///< shading normal, on the side of wo: gives cosines
+  Vec3f mirror{0.0F};      ///< wo reflected about n
+  Vec3f refracted{0.0F};   ///< wo refracted through n; meaningless under total reflection
+  double cos_o = 1.0;      ///< n.wo > 0
+  double cos_t = 0.0;      ///< cosine of `refracted`; 0 under total reflection
+  double eta_o = 1.0, eta_t = 1.0;  ///< index on the side of wo and on the other
+  double exponent = 1.0;
+  Rgbd diffuse_same{0.0}, diffuse_through{0.0};        ///< values of f, sr^-1
+  Rgbd specular_opaque{0.0}, specular_transparent{0.0};  ///< weights of f_ph and f_st
+  LobeChoice choice;
+  bool black = true;       ///< reflects and transmits nothing
+};
+
+/// f times |cos theta_i|, and the density over solid angle with which sample_bsdf finds wi.
+struct BsdfValue {
+  Rgbd f_cos{0.0};
+  double pdf = 0.0;
+};
+
+enum class Lobe : std::uint8_t { kNone, kDiffuse, kSpecular };
+
+struct BsdfSample {
+  Vec3f wi{0.0F};
+  Rgbd weight{0.0};       ///< f cos / pdf, finite for every exponent
+  double pdf = 0.0;       ///< of the whole mixture, sr^-1
+  Lobe lobe = Lobe::kNone;  ///< kNone: the path ends here
+};
+
+/// `ng` as wound, `ns` interpolated (or ng); wo points away from the surface. Index 1 in front of
+/// ng, the material's behind it. Where ns faces away from the viewer, ng takes its place.
+[[nodiscard]] Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns,
+                             const Vec3f& wo, const BsdfModel& model);
+
+[[nodiscard]] BsdfValue evaluate(const Bsdf& bsdf, const Vec3f& wi);
+
+/// Uses dimensions kLobeChoice, kFresnelChoice, kDirectionU and kDirectionV of the vertex.
+[[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const VertexKey& vertex);
+
+}  // namespace raykiln::render

@@ -1,0 +1,51 @@
+// What shines: point lights, and triangles whose material emits.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raykiln/sampling/discrete_distribution.hpp"
+#include "raykiln/sampling/random.hpp"
+#include "raykiln/scene/scene.hpp"
+#include "raykiln/shading/surface_point.hpp"
+
+namespace raykiln::render {
+
+/// A point on an emitting triangle.
+struct EmitterSample {
+  SurfacePoint point;
+  Rgbd radiance{0.0};  ///< the same to both sides, W sr^-1 m^-2
+  double pdf_area = 0.0;  ///< m^-2
+};
+
+/// Emitting triangles, drawn with probability proportional to area times the largest channel of
+/// their radiance (not luminance: permuting channels must not change a draw), then uniformly by
+/// area; and the point lights that shine at all. Triangles of zero area or radiance are left out.
+class Emitters {
+ public:
+  explicit Emitters(const Scene& scene);
+
+  [[nodiscard]] bool has_triangles() const { return !distribution_.empty(); }
+  [[nodiscard]] std::span<const PointLight> point_lights() const { return point_lights_; }
+
+  /// Uses dimensions kLightChoice, kLightU and kLightV. Precondition: has_triangles().
+  [[nodiscard]] EmitterSample sample(const Scene& scene, const VertexKey& vertex) const;
+
+  /// Density per area with which sample() finds a point of a triangle of this radiance, m^-2.
+  [[nodiscard]] double pdf_area(const Rgb& radiance) const;
+
+ private:
+  std::vector<std::uint32_t> triangles_;
+  DiscreteDistribution distribution_;
+  std::vector<PointLight> point_lights_;
+};
+
+/// Weight of a sample of density p when density q could have found it too: p^2 / (p^2 + q^2), the
+/// power heuristic with exponent 2 (Veach & Guibas 1995). p > 0, q >= 0, both may be huge.
+[[nodiscard]] inline double power_heuristic(double p, double q) {
+  const double ratio = q / p;
+  return 1.0 / (1.0 + ratio * ratio);
+}
+
+}  // namespace raykiln::render

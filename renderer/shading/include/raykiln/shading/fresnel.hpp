@@ -1,0 +1,25 @@
+// Reflectance and refraction at the border of two transparent media.
+#pragma once
+
+#include "raykiln/math/vec.hpp"
+
+namespace raykiln::render {
+
+/// What a border does to light that meets it at some angle.
+struct FresnelTerm {
+  double reflectance = 1.0;  ///< in [0, 1]
+  double cos_t = 0.0;        ///< cosine on the other side; 0 under total internal reflection
+  bool total_reflection = false;
+};
+
+/// Schlick (1994): R0 + (1 - R0)(1 - cos)^5 with the angle on the rare side, so that it reaches 1 at
+/// the critical angle. `cos_from` in [0, 1] on the side of index `eta_from`. Total internal
+/// reflection is decided here alone, by sin^2 >= 1, never by angles.
+[[nodiscard]] FresnelTerm fresnel_schlick(double cos_from, double eta_from, double eta_to);
+
+/// Direction on the other side of `n` (unit, on the side of `w`) for light leaving along `w`
+/// (Snell's law). Precondition: no total reflection; `cos_t` from the same FresnelTerm.
+[[nodiscard]] Vec3d refract(const Vec3d& w, const Vec3d& n, double cos_from, double cos_t,
+                            double eta_from, double eta_to);
+
+}  // namespace raykiln::render

@@ -1,0 +1,28 @@
+// A point on a triangle: position with an error bound, normals, and where rays may start.
+#pragma once
+
+#include <cstdint>
+
+#include "raykiln/math/vec.hpp"
+#include "raykiln/scene/scene.hpp"
+
+namespace raykiln::render {
+
+struct SurfacePoint {
+  Vec3d p{0.0};       ///< from the barycentrics, world space relative to Scene::origin, metres
+  Vec3d ng{0.0};      ///< unit, as wound
+  Vec3f ns{0.0F};     ///< unit; interpolated where all three corners have a normal, else ng
+  double clearance = 0.0;  ///< distance from the plane at which a ray misses its own triangle
+  std::uint32_t material = 0;
+};
+
+/// Point (1 - u - v) p0 + u p1 + v p2 of triangle `id`.
+[[nodiscard]] SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u,
+                                         double v);
+
+/// Origin of a ray that leaves `point` towards `direction`: moved along the geometric normal by
+/// the clearance, to the side of the direction, and rounded outwards. No absolute length enters,
+/// so that scaling a scene by a power of two scales origins exactly.
+[[nodiscard]] Vec3f ray_origin(const SurfacePoint& point, const Vec3d& direction);
+
+}  // namespace raykiln::render

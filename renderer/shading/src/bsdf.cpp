@@ -1,0 +1,152 @@
+#include "raykiln/shading/bsdf.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raykiln/sampling/warp.hpp"
+#include "raykiln/shading/fresnel.hpp"
+
+namespace raykiln::render {
+namespace {
+
+/// The largest channel and not luminance: permuting the channels must not change a choice.
+double largest(const Rgbd& c) { return std::max({c.x, c.y, c.z, 0.0}); }
+
+/// Broad lobes mix directions of view with other reflectances than that of wo, so a choice that
+/// follows F(theta_o) to 0 would leave weights F(theta_i) / F(theta_o) without bound.
+constexpr double kBroadExponent = 1e4;
+constexpr double kLeastShare = 1.0 / 32.0;
+
+double reflected_share(const FresnelTerm& fresnel, double exponent) {
+  if (fresnel.total_reflection || exponent >= kBroadExponent) return fresnel.reflectance;
+  return std::clamp(fresnel.reflectance, kLeastShare, 1.0 - kLeastShare);
+}
+
+LobeChoice choose_lobes(const Material& material, double share) {
+  const double diffuse = largest(Rgbd(material.diffuse));
+  const double specular = largest(Rgbd(material.specular));
+  const double transparent = static_cast<double>(material.transparent);
+  LobeChoice choice;
+  if (diffuse + specular > 0.0) choice.specular = specular / (diffuse + specular);
+  choice.diffuse_through = 0.5 * transparent;
+  choice.specular_through = transparent * (1.0 - share);
+  return choice;
+}
+
+/// Value on the side of wo: diffuse + (opaque + transparent F(theta_i)) f_ph, f_ph with 1/cos_o.
+BsdfValue evaluate_same_side(const Bsdf& b, double cos_i, double x_diffuse, double x_specular) {
+  const double lobe =
+      b.choice.specular > 0.0 ? cosine_power_pdf(x_specular, b.exponent) : 0.0;
+  Rgbd f = b.diffuse_same;
+  if (lobe > 0.0) {
+    const double reflectance = fresnel_schlick(cos_i, b.eta_o, b.eta_t).reflectance;
+    f += (b.specular_opaque + b.specular_transparent * reflectance) * (lobe / b.cos_o);
+  }
+  const double diffuse = (1.0 - b.choice.specular) * (1.0 - b.choice.diffuse_through) *
+                         cosine_power_pdf(x_diffuse, b.model.diffuse_exponent);
+  return {f * cos_i, diffuse + b.choice.specular * (1.0 - b.choice.specular_through) * lobe};
+}
+
+/// Value on the other side: diffuse + transparent (1 - F(theta_i)) f_ph(wi, refract(wo)).
+BsdfValue evaluate_other_side(const Bsdf& b, double cos_i, double x_diffuse, double x_specular) {
+  const bool refracts = b.choice.specular * b.choice.specular_through > 0.0 && b.cos_t > 0.0;
+  const double lobe = refracts ? cosine_power_pdf(x_specular, b.exponent) : 0.0;
+  Rgbd f = b.diffuse_through;
+  if (lobe > 0.0) {
+    const double reflectance = fresnel_schlick(cos_i, b.eta_t, b.eta_o).reflectance;
+    f += b.specular_transparent * ((1.0 - reflectance) * lobe / b.cos_t);
+  }
+  const double diffuse = (1.0 - b.choice.specular) * b.choice.diffuse_through *
+                         cosine_power_pdf(x_diffuse, b.model.diffuse_exponent);
+  return {f * cos_i, diffuse + b.choice.specular * b.choice.specular_through * lobe};
+}
+
+/// `sampled_x` is the exact 1 - cos of a specular sample, or negative: then it is measured.
+BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, double sampled_x) {
+  const double side = dot(Vec3d(b.ng), Vec3d(wi));
+  const double cosine = std::clamp(dot(Vec3d(b.n), Vec3d(wi)), -1.0, 1.0);
+  const Vec3f& axis = side > 0.0 ? b.mirror : b.refracted;
+  const double x = sampled_x >= 0.0 ? sampled_x : one_minus_cos(axis, wi);
+  BsdfValue value;
+  if (side > 0.0) {
+    value = evaluate_same_side(b, std::max(cosine, 0.0), 1.0 - cosine, x);
+  } else if (side < 0.0) {
+    value = evaluate_other_side(b, std::max(-cosine, 0.0), 1.0 + cosine, x);
+  }
+  if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
+    value.pdf = kUniformSpherePdf;
+  }
+  return value;
+}
+
+BsdfSample finish(const Bsdf& b, const Vec3f& wi, Lobe lobe, bool through, double sampled_x) {
+  // The part of a lobe that reaches beyond its own side of the surface is lost, not reflected.
+  const double side = dot(Vec3d(b.ng), Vec3d(wi));
+  if (lobe != Lobe::kNone && (through ? side >= 0.0 : side <= 0.0)) return {};
+  const BsdfValue value = evaluate_with(b, wi, sampled_x);
+  if (value.f_cos == Rgbd(0.0)) return {};
+  return {.wi = wi, .weight = value.f_cos / value.pdf, .pdf = value.pdf, .lobe = lobe};
+}
+
+}  // namespace
+
+Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns, const Vec3f& wo,
+               const BsdfModel& model) {
+  Bsdf b;
+  b.model = model;
+  const bool front = dot(Vec3d(ng), Vec3d(wo)) >= 0.0;
+  b.ng = front ? ng : -ng;
+  b.n = dot(ns, b.ng) < 0.0F ? -ns : ns;
+  b.cos_o = std::min(dot(Vec3d(b.n), Vec3d(wo)), 1.0);
+  if (!(b.cos_o > 0.0)) {
+    b.n = b.ng;
+    b.cos_o = std::clamp(dot(Vec3d(b.n), Vec3d(wo)), 0x1p-100, 1.0);
+  }
+  b.eta_o = front ? 1.0 : static_cast<double>(material.index_of_refraction);
+  b.eta_t = front ? static_cast<double>(material.index_of_refraction) : 1.0;
+  b.exponent = std::min(material.specular_exp, kLargestExponent);
+
+  const double transparent = static_cast<double>(material.transparent);
+  const Rgbd diffuse(material.diffuse);
+  b.diffuse_same = diffuse * ((1.0 - 0.5 * transparent) / kPi);
+  b.diffuse_through = diffuse * (0.5 * transparent / kPi);
+  b.specular_opaque = Rgbd(material.specular) * (1.0 - transparent);
+  b.specular_transparent = Rgbd(material.specular) * transparent;
+  b.black = !(largest(diffuse) + largest(Rgbd(material.specular)) > 0.0);
+
+  const Vec3d n(b.n), w(wo);
+  b.mirror = Vec3f(normalize(2.0 * b.cos_o * n - w));
+  const FresnelTerm fresnel = fresnel_schlick(b.cos_o, b.eta_o, b.eta_t);
+  b.cos_t = fresnel.cos_t;
+  if (!fresnel.total_reflection) {
+    b.refracted = Vec3f(refract(w, n, b.cos_o, b.cos_t, b.eta_o, b.eta_t));
+  }
+  b.choice = choose_lobes(material, reflected_share(fresnel, b.exponent));
+  return b;
+}
+
+BsdfValue evaluate(const Bsdf& bsdf, const Vec3f& wi) { return evaluate_with(bsdf, wi, -1.0); }
+
+BsdfSample sample_bsdf(const Bsdf& b, const VertexKey& vertex) {
+  if (b.black) return {};
+  const double u = uniform(vertex, Dimension::kDirectionU);
+  const double v = uniform(vertex, Dimension::kDirectionV);
+  if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
+    BsdfSample sample = finish(b, sample_uniform_sphere(u, v), Lobe::kNone, false, -1.0);
+    if (sample.pdf > 0.0) sample.lobe = Lobe::kDiffuse;
+    return sample;
+  }
+  const bool specular = uniform(vertex, Dimension::kLobeChoice) < b.choice.specular;
+  const double through_share = specular ? b.choice.specular_through : b.choice.diffuse_through;
+  const bool through =
+      through_share > 0.0 && uniform(vertex, Dimension::kFresnelChoice) < through_share;
+  if (specular) {
+    const double x = sample_one_minus_cos(u, b.exponent);
+    return finish(b, around_axis(through ? b.refracted : b.mirror, x, v), Lobe::kSpecular, through,
+                  x);
+  }
+  const double x = sample_one_minus_cos(u, b.model.diffuse_exponent);
+  return finish(b, around_axis(through ? -b.n : b.n, x, v), Lobe::kDiffuse, through, -1.0);
+}
+
+}  // namespace raykiln::render

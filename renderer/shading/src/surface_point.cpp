@@ -1,0 +1,66 @@
+#include "raykiln/shading/surface_point.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "raykiln/math/float_bits.hpp"
+
+namespace raykiln::render {
+namespace {
+
+double largest_component(const Vec3d& v) {
+  const Vec3d a = abs(v);
+  return std::max({a.x, a.y, a.z});
+}
+
+Vec3f interpolated_normal(const TriangleMesh& mesh, std::uint32_t id, double u, double v,
+                          const Vec3f& ng) {
+  if (mesh.corner_normals.empty()) return ng;
+  const auto& corner = mesh.corner_normals[id];
+  if (corner[0] == kNoNormal || corner[1] == kNoNormal || corner[2] == kNoNormal) return ng;
+  const Vec3d sum = (1.0 - u - v) * Vec3d(mesh.normals[corner[0]]) +
+                    u * Vec3d(mesh.normals[corner[1]]) + v * Vec3d(mesh.normals[corner[2]]);
+  const double squared = dot(sum, sum);
+  return squared > 0.0 ? Vec3f(sum / std::sqrt(squared)) : ng;
+}
+
+float round_away(double value, double offset) {
+  if (offset > 0.0) return next_up(static_cast<float>(value));
+  if (offset < 0.0) return next_down(static_cast<float>(value));
+  return static_cast<float>(value);
+}
+
+}  // namespace
+
+// Two errors have to be cleared. The position itself: gamma_7 sum |b_i p_i| per coordinate bounds
+// what float barycentrics and rounding do to it (Pharr, Jakob & Humphreys 2023, section 6.8.4).
+// And the test of the own triangle against the new ray: the sheared differences p_i - o carry
+// gamma_4 of the largest of them, which the first term misses where the coordinates are near 0.
+SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u, double v) {
+  const auto& corner = mesh.triangles[id];
+  const std::array<Vec3d, 3> p{Vec3d(mesh.positions[corner[0]]), Vec3d(mesh.positions[corner[1]]),
+                               Vec3d(mesh.positions[corner[2]])};
+  const std::array<double, 3> b{1.0 - u - v, u, v};
+  SurfacePoint point;
+  point.p = b[0] * p[0] + b[1] * p[1] + b[2] * p[2];
+  point.ng = normalize(cross(p[1] - p[0], p[2] - p[0]));
+  point.ns = interpolated_normal(mesh, id, u, v, Vec3f(point.ng));
+  point.material = mesh.material_ids[id];
+
+  const Vec3d bound =
+      gamma_bound(7) * (abs(b[0] * p[0]) + abs(b[1] * p[1]) + abs(b[2] * p[2]));
+  double reach = 0.0;
+  for (const Vec3d& vertex : p) reach = std::max(reach, largest_component(vertex - point.p));
+  point.clearance = dot(abs(point.ng), bound) + gamma_bound(4) * reach;
+  return point;
+}
+
+Vec3f ray_origin(const SurfacePoint& point, const Vec3d& direction) {
+  const double side = dot(point.ng, direction) < 0.0 ? -1.0 : 1.0;
+  const Vec3d offset = side * point.clearance * point.ng;
+  const Vec3d moved = point.p + offset;
+  return {round_away(moved.x, offset.x), round_away(moved.y, offset.y),
+          round_away(moved.z, offset.z)};
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,153 @@
+// All planes of a film are the same bytes however the work was cut, run and ordered.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include "support/scene_pieces.hpp"
+
+namespace raykiln::render {
+namespace {
+
+struct Cut {
+  int threads = 1;
+  int tile = 16;
+  std::size_t blocks_a_task = 1;
+};
+
+constexpr int kWidth = 36, kHeight = 20;
+
+RenderSettings small_settings() {
+  RenderSettings settings;
+  settings.width = kWidth;
+  settings.height = kHeight;
+  settings.max_depth = 6;
+  settings.seed = 11;
+  return settings;
+}
+
+/// One tile's tasks in order, cut from all the blocks of the job.
+void render_one_tile(const PreparedScene& scene, const RenderSettings& settings,
+                     const PixelRect& rect, std::span<const SampleBlock> blocks, const Cut& cut,
+                     Film& film, std::mutex& mutex) {
+  for (std::size_t first = 0; first < blocks.size(); first += cut.blocks_a_task) {
+    const auto some = blocks.subspan(first, std::min(cut.blocks_a_task, blocks.size() - first));
+    const TileResult result = render_tile(scene, settings, rect, some, {});
+    const std::lock_guard lock(mutex);
+    merge(film, result);
+  }
+}
+
+void render_into(Film& film, const PreparedScene& scene, const RenderSettings& settings,
+                 std::span<const SampleBlock> blocks, const Cut& cut) {
+  std::vector<PixelRect> tiles;
+  for (int y = 0; y < kHeight; y += cut.tile) {
+    for (int x = 0; x < kWidth; x += cut.tile) {
+      tiles.push_back({x, y, std::min(x + cut.tile, kWidth), std::min(y + cut.tile, kHeight)});
+    }
+  }
+  std::mutex mutex;
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < cut.threads; ++t) {
+    threads.emplace_back([&, t] {
+      // Backwards and interleaved: the order of tiles must not matter either.
+      for (std::size_t i = tiles.size(); i-- > 0;) {
+        if (i % static_cast<std::size_t>(cut.threads) != static_cast<std::size_t>(t)) continue;
+        render_one_tile(scene, settings, tiles[i], blocks, cut, film, mutex);
+      }
+    });
+  }
+}
+
+Film render(const PreparedScene& scene, const RenderSettings& settings, std::uint64_t samples,
+            const Cut& cut) {
+  Film film(kWidth, kHeight);
+  render_into(film, scene, settings, blocks_for(samples), cut);
+  return film;
+}
+
+void expect_same(const Film& a, const Film& b, const std::string& what) {
+  for (const PlaneSpec& spec : film_planes()) {
+    const auto x = a.plane(spec.name), y = b.plane(spec.name);
+    ASSERT_EQ(x.size(), y.size());
+    EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0)
+        << spec.name << ", " << what;
+  }
+}
+
+class SameBytes : public testing::Test {
+ protected:
+  std::shared_ptr<const PreparedScene> scene_ = support::mixed_room().prepare();
+};
+
+TEST_F(SameBytes, ForThreadsTilesAndTaskLengths) {
+  const RenderSettings settings = small_settings();
+  const Film reference = render(*scene_, settings, 21, {});
+  EXPECT_GT(reference.plane("beauty")[0], 0.0);
+  for (const int threads : {1, 2, 7}) {
+    for (const int tile : {1, 16, 1000}) {
+      if (tile == 1 && threads == 2) continue;  // covered by 1 and 7, and the slowest
+      for (const std::size_t length : {std::size_t{1}, std::size_t{5}}) {
+        expect_same(reference, render(*scene_, settings, 21, {threads, tile, length}),
+                    std::to_string(threads) + " threads, tile " + std::to_string(tile) +
+                        ", blocks a task " + std::to_string(length));
+      }
+    }
+  }
+}
+
+TEST_F(SameBytes, SixteenAndSixteenAgainstThirtyTwo) {
+  const RenderSettings settings = small_settings();
+  const Film whole = render(*scene_, settings, 32, {});
+  Film parts(kWidth, kHeight);
+  const auto blocks = blocks_for(32);
+  const auto split = std::find_if(blocks.begin(), blocks.end(),
+                                  [](const SampleBlock& b) { return b.first == 16; });
+  render_into(parts, *scene_, settings, std::span(blocks.begin(), split), {2, 7, 3});
+  render_into(parts, *scene_, settings, std::span(split, blocks.end()), {1, 1000, 1});
+  expect_same(whole, parts, "16 + 16");
+}
+
+TEST_F(SameBytes, AnIncompleteBlockRenderedAnewLeavesNoTrace) {
+  const RenderSettings settings = small_settings();
+  Film film = render(*scene_, settings, 21, {});
+  const std::vector<SampleBlock> again{sample_block(5)};
+  render_into(film, *scene_, settings, again, {});
+  expect_same(render(*scene_, settings, 32, {}), film, "21 extended to 32");
+}
+
+TEST_F(SameBytes, ForBruteForceAndOtherTrees) {
+  RenderSettings settings = small_settings();
+  const Film reference = render(*scene_, settings, 8, {});
+  BuildParams flat;
+  flat.max_depth = 2;
+  flat.leaf_width = 16;
+  expect_same(reference, render(*support::mixed_room().prepare(flat), settings, 8, {}), "flat tree");
+  BuildParams eager;
+  eager.k_t = 0.1;
+  eager.k_i = 1.0;
+  expect_same(reference, render(*support::mixed_room().prepare(eager), settings, 8, {}), "deep tree");
+  settings.traversal = Traversal::kBruteForce;
+  expect_same(reference, render(*scene_, settings, 8, {}), "brute force");
+}
+
+TEST_F(SameBytes, WithBranches) {
+  RenderSettings settings = small_settings();
+  settings.branches = 3;
+  settings.max_depth = 3;
+  const Film reference = render(*scene_, settings, 4, {});
+  expect_same(reference, render(*scene_, settings, 4, {2, 1000, 5}), "branches, large tiles");
+  expect_same(reference, render(*scene_, settings, 4, {7, 1, 1}), "branches, tiles of one pixel");
+}
+
+TEST_F(SameBytes, AnotherSeedIsAnotherPicture) {
+  RenderSettings settings = small_settings();
+  const auto a = render(*scene_, settings, 1, {}).plane("beauty");
+  settings.seed += 1;
+  EXPECT_NE(a, render(*scene_, settings, 1, {}).plane("beauty"));
+}
+
+}  // namespace
+}  // namespace raykiln::render

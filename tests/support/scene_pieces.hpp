@@ -1,0 +1,164 @@
+// Small scenes put together by hand, for tests and benchmarks of light transport.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "raykiln/render/render.hpp"
+#include "raykiln/scene/scene.hpp"
+
+namespace raykiln::render::support {
+
+inline Material diffuse_material(const Rgb& albedo, const Rgb& emission = Rgb(0.0F)) {
+  Material material;
+  material.diffuse = albedo;
+  material.emission = emission;
+  return material;
+}
+
+inline Material mirror_material(float reflectance, double exponent) {
+  Material material;
+  material.specular = Rgb(reflectance);
+  material.specular_exp = exponent;
+  return material;
+}
+
+inline Material glass_material(float index, double exponent) {
+  Material material = mirror_material(1.0F, exponent);
+  material.transparent = 1.0F;
+  material.index_of_refraction = index;
+  return material;
+}
+
+/// Collects triangles and hands out the finished scene.
+class SceneBuilder {
+ public:
+  std::uint32_t material(const Material& material) {
+    scene_.materials.push_back(material);
+    return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+  }
+
+  void triangle(const Vec3f& a, const Vec3f& b, const Vec3f& c, std::uint32_t material) {
+    const auto first = static_cast<std::uint32_t>(scene_.mesh.positions.size());
+    for (const Vec3f& p : {a, b, c}) {
+      scene_.mesh.positions.push_back(p);
+      scene_.bounds.grow(p);
+    }
+    scene_.mesh.triangles.push_back({first, first + 1, first + 2});
+    scene_.mesh.material_ids.push_back(material);
+  }
+
+  /// Corners counter-clockwise seen from the side that the normal faces.
+  void quad(const std::array<Vec3f, 4>& p, std::uint32_t material) {
+    triangle(p[0], p[1], p[2], material);
+    triangle(p[0], p[2], p[3], material);
+  }
+
+  /// Axis-parallel box; normals face outwards, or inwards for a room.
+  void box(const Vec3f& lo, const Vec3f& hi, std::uint32_t material, bool inwards = false) {
+    const auto corner = [&](int i) {
+      return Vec3f((i & 1) != 0 ? hi.x : lo.x, (i & 2) != 0 ? hi.y : lo.y,
+                   (i & 4) != 0 ? hi.z : lo.z);
+    };
+    constexpr std::array<std::array<int, 4>, 6> kFaces{{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+    for (const auto& f : kFaces) {
+      if (inwards) {
+        quad({corner(f[3]), corner(f[2]), corner(f[1]), corner(f[0])}, material);
+      } else {
+        quad({corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])}, material);
+      }
+    }
+  }
+
+  void point_light(const Vec3f& position, const Rgb& intensity) {
+    scene_.point_lights.push_back({.name = "", .position = position, .intensity = intensity});
+  }
+
+  /// A camera at `eye` that looks at `target`; `up` must not be parallel to that.
+  void camera(const Vec3f& eye, const Vec3f& target, const Vec3f& up, float fov_y_rad) {
+    Camera camera;
+    camera.eye = eye;
+    camera.forward = normalize(target - eye);
+    camera.right = normalize(cross(camera.forward, up));
+    camera.up = cross(camera.right, camera.forward);
+    camera.fov_y_rad = fov_y_rad;
+    scene_.cameras.push_back(camera);
+  }
+
+  Scene& scene() { return scene_; }
+
+  [[nodiscard]] std::shared_ptr<const PreparedScene> prepare(const BuildParams& params = {}) const {
+    auto scene = std::make_shared<const Scene>(scene_);
+    SerialTaskRunner runner;
+    return render::prepare(scene, build_scene_tree(*scene, params, runner));
+  }
+
+ private:
+  Scene scene_;
+};
+
+/// A closed room of two coloured walls with a light in the ceiling, a glass and a mirror box and a
+/// point light: every kind of surface and light at once. Seen from inside.
+inline SceneBuilder mixed_room(double sharp_exponent = 1e10) {
+  SceneBuilder b;
+  const auto white = b.material(diffuse_material(Rgb(0.7F)));
+  const auto red = b.material(diffuse_material({0.6F, 0.1F, 0.1F}));
+  const auto green = b.material(diffuse_material({0.1F, 0.6F, 0.1F}));
+  const auto lamp = b.material(diffuse_material(Rgb(0.0F), {12.0F, 10.0F, 7.0F}));
+  const auto glass = b.material(glass_material(1.5F, sharp_exponent));
+  Material gloss = mirror_material(0.4F, 200.0);
+  gloss.diffuse = Rgb(0.3F);
+  const auto glossy = b.material(gloss);
+  b.quad({Vec3f(-1, -1, -1), {-1, -1, 1}, {1, -1, 1}, {1, -1, -1}}, glossy);
+  b.quad({Vec3f(-1, 1, -1), {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}}, white);
+  b.quad({Vec3f(-1, -1, -1), {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}}, white);
+  b.quad({Vec3f(-1, -1, 1), {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}, white);
+  b.quad({Vec3f(-1, -1, -1), {-1, 1, -1}, {-1, 1, 1}, {-1, -1, 1}}, red);
+  b.quad({Vec3f(1, -1, -1), {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}, green);
+  b.quad({Vec3f(-0.3F, 0.99F, -0.3F), {0.3F, 0.99F, -0.3F}, {0.3F, 0.99F, 0.3F}, {-0.3F, 0.99F, 0.3F}},
+         lamp);
+  b.box({0.1F, -0.99F, -0.1F}, {0.6F, -0.4F, 0.4F}, glass);
+  b.box({-0.7F, -0.99F, -0.6F}, {-0.2F, 0.2F, -0.1F}, b.material(mirror_material(0.9F, sharp_exponent)));
+  b.point_light({-0.5F, 0.5F, 0.5F}, Rgb(0.3F));
+  b.camera({0.0F, 0.0F, 0.95F}, {0.0F, -0.2F, -1.0F}, {0, 1, 0}, 1.2F);
+  return b;
+}
+
+/// Renders the whole picture on this thread, all blocks of a tile in one task.
+inline TileResult render_all(const PreparedScene& scene, const RenderSettings& settings,
+                             std::uint64_t samples) {
+  const auto blocks = blocks_for(samples);
+  return render_tile(scene, settings, {0, 0, settings.width, settings.height}, blocks, {});
+}
+
+/// Mean of the three channels' sums over all pixels and samples, and the standard error of the
+/// luminance mean from the spread between samples.
+struct Estimate {
+  Rgbd mean{0.0};
+  double standard_error = 0.0;
+  double samples = 0.0;
+};
+
+inline Estimate estimate(const TileResult& result) {
+  Film film(result.rect.x1, result.rect.y1);
+  merge(film, result);
+  Estimate e;
+  const auto beauty = film.plane("beauty");
+  const auto counts = film.plane("samples");
+  const auto moments = film.plane("luminance_moment");
+  double variance = 0.0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    e.mean += Rgbd(beauty[3 * i], beauty[3 * i + 1], beauty[3 * i + 2]);
+    e.samples += counts[i];
+    if (counts[i] > 1.0) variance += counts[i] * moments[i] / (counts[i] - 1.0);
+  }
+  e.mean /= e.samples;
+  e.standard_error = std::sqrt(variance) / e.samples;
+  return e;
+}
+
+}  // namespace raykiln::render::support
