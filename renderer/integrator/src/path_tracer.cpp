@@ -1,6 +1,7 @@
 #include "raykiln/integrator/path_tracer.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "path_stream.hpp"
@@ -13,6 +14,11 @@ namespace {
 constexpr std::size_t kStreamPaths = 4096;  ///< paths kept under way while there are so many
 constexpr std::size_t kMostBranchRays = 65536;  ///< rays of one bounce, all branches together
 constexpr std::size_t kManyRays = 1024;     ///< what a call into the tree should bring
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// The widest level of the tree of rays that one start can grow.
 double widest_level(int branches, int max_depth) { return std::pow(branches, max_depth); }
@@ -29,6 +35,8 @@ void add(RenderStats& stats, const RenderStats& other) {
   stats.truncated += other.truncated;
   stats.closest_calls += other.closest_calls;
   stats.short_calls_while_many_live += other.short_calls_while_many_live;
+  stats.traversal_seconds += other.traversal_seconds;
+  stats.shading_seconds += other.shading_seconds;
   stats.traversal.calls += other.traversal.calls;
   stats.traversal.rays += other.traversal.rays;
   stats.traversal.node_steps += other.traversal.node_steps;
@@ -53,11 +61,67 @@ struct PathTracer::Scratch {
   ShadowQueue shadows;
 };
 
+/// One call of trace().
+struct PathTracer::Call {
+  std::span<const PathStart> starts;
+  std::span<PathResult> results;
+  RenderStats& stats;
+  const std::stop_token& stop;
+  std::size_t started = 0;  ///< starts whose camera ray has been shot
+};
+
 PathTracer::PathTracer(const TransportScene& scene, const CameraRays& camera,
                        const PathSettings& settings)
     : scene_(scene), camera_(camera), settings_(settings), scratch_(std::make_unique<Scratch>()) {}
 
 PathTracer::~PathTracer() = default;
+
+void PathTracer::admit(Call& call) {
+  PathStream& front = scratch_->front;
+  if (settings_.branches > 1 && front.size() > 0) return;
+  const double widest = widest_level(settings_.branches, settings_.max_depth);
+  const auto room = static_cast<std::size_t>(std::clamp(static_cast<double>(kMostBranchRays) / widest,
+                                                        1.0, static_cast<double>(kStreamPaths)));
+  for (; call.started < call.starts.size() && front.size() < room; ++call.started) {
+    const PathStart& start = call.starts[call.started];
+    const std::uint64_t pixel =
+        (static_cast<std::uint64_t>(start.y) << 32) | static_cast<std::uint32_t>(start.x);
+    PathState state;
+    state.key = path_key(settings_.seed, pixel, start.sample);
+    state.slot = static_cast<std::uint32_t>(call.started);
+    front.push(camera_.ray(start.x, start.y, settings_.pixel_mode, vertex_key(state.key, 0, 0)),
+               state);
+  }
+}
+
+void PathTracer::advance(Call& call, std::size_t begin, std::size_t end) {
+  Scratch& scratch = *scratch_;
+  const PathStream& front = scratch.front;
+  const std::span<const Ray> rays(front.rays.data() + begin, end - begin);
+  scratch.hits.resize(rays.size());
+  const Clock::time_point start = Clock::now();
+  closest_hits(scene_.tree, rays, scratch.hits, {}, settings_.traversal, &call.stats.traversal);
+  call.stats.traversal_seconds += seconds_since(start);
+  call.stats.closest_calls += 1;
+  call.stats.short_calls_while_many_live += rays.size() < kManyRays && front.size() >= kManyRays;
+  shade(call, begin, end);
+}
+
+void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
+  Scratch& scratch = *scratch_;
+  const PathStream& front = scratch.front;
+  RenderStats& stats = call.stats;
+  const Clock::time_point start = Clock::now();
+  const double traversal_before = stats.traversal_seconds;
+  ShadingSinks sinks{call.results, scratch.shadows, scratch.next, stats, call.stop};
+  for (std::size_t i = begin; i < end && !sinks.stopped; ++i) {
+    (front.states[i].bounce == 0 ? stats.camera_rays : stats.bounce_rays) += 1;
+    shade_vertex(scene_, settings_, front.rays[i], front.states[i], scratch.hits[i - begin], sinks);
+  }
+  scratch.shadows.flush(scene_.tree, settings_.traversal, call.results, stats);
+  stats.shading_seconds +=
+      seconds_since(start) - (stats.traversal_seconds - traversal_before);
+}
 
 // Paths are a queue: continuations go to its end and new starts behind them, so the contributions
 // of one start always come in order of (bounce, node), wherever a call is cut. Starts are let in
@@ -65,57 +129,19 @@ PathTracer::~PathTracer() = default;
 bool PathTracer::trace(std::span<const PathStart> starts, std::span<PathResult> results,
                        RenderStats& stats, const std::stop_token& stop) {
   Scratch& scratch = *scratch_;
-  PathStream& front = scratch.front;
-  PathStream& next = scratch.next;
-  front.clear();
+  scratch.front.clear();
   scratch.shadows.clear();
   std::fill(results.begin(), results.end(), PathResult{});
-  std::size_t started = 0;
-
-  const auto admit = [&] {
-    const double widest = widest_level(settings_.branches, settings_.max_depth);
-    const bool branching = settings_.branches > 1 && front.size() > 0;
-    const auto room =
-        branching ? std::size_t{0}
-                  : static_cast<std::size_t>(std::clamp(
-                        static_cast<double>(kMostBranchRays) / widest, 1.0,
-                        static_cast<double>(kStreamPaths)));
-    for (; started < starts.size() && front.size() < room; ++started) {
-      const PathStart& start = starts[started];
-      const std::uint64_t pixel = (static_cast<std::uint64_t>(start.y) << 32) |
-                                  static_cast<std::uint32_t>(start.x);
-      PathState state;
-      state.key = path_key(settings_.seed, pixel, start.sample);
-      state.slot = static_cast<std::uint32_t>(started);
-      front.push(camera_.ray(start.x, start.y, settings_.pixel_mode, vertex_key(state.key, 0, 0)),
-                 state);
-    }
-  };
-
-  const auto advance = [&](std::size_t begin, std::size_t end) {
-    const std::span<const Ray> rays(front.rays.data() + begin, end - begin);
-    scratch.hits.resize(rays.size());
-    closest_hits(scene_.tree, rays, scratch.hits, {}, settings_.traversal, &stats.traversal);
-    stats.closest_calls += 1;
-    stats.short_calls_while_many_live += rays.size() < kManyRays && front.size() >= kManyRays;
-    ShadingSinks sinks{results, scratch.shadows, next, stats};
-    for (std::size_t i = begin; i < end; ++i) {
-      const bool camera_ray = front.states[i].bounce == 0;
-      (camera_ray ? stats.camera_rays : stats.bounce_rays) += 1;
-      shade_vertex(scene_, settings_, front.rays[i], front.states[i], scratch.hits[i - begin],
-                   sinks);
-    }
-  };
-
-  for (admit(); front.size() > 0; admit()) {
-    next.clear();
-    const std::size_t calls = std::max<std::size_t>(front.size() / kStreamPaths, 1);
-    for (std::size_t call = 0; call < calls; ++call) {
+  Call call{starts, results, stats, stop};
+  for (admit(call); scratch.front.size() > 0; admit(call)) {
+    scratch.next.clear();
+    const std::size_t live = scratch.front.size();
+    const std::size_t calls = std::max<std::size_t>(live / kStreamPaths, 1);
+    for (std::size_t i = 0; i < calls; ++i) {
       if (stop.stop_requested()) return false;
-      advance(front.size() * call / calls, front.size() * (call + 1) / calls);
+      advance(call, live * i / calls, live * (i + 1) / calls);
     }
-    scratch.shadows.flush(scene_.tree, settings_.traversal, results, stats);
-    std::swap(front, next);
+    std::swap(scratch.front, scratch.next);
   }
   stats.paths += starts.size();
   for (const PathResult& result : results) stats.truncated += result.truncated;

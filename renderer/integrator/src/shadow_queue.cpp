@@ -1,5 +1,7 @@
 #include "shadow_queue.hpp"
 
+#include <chrono>
+
 namespace raykiln::render {
 namespace {
 
@@ -22,7 +24,10 @@ void ShadowQueue::flush(const KdTree& tree, Traversal traversal, std::span<PathR
                         RenderStats& stats) {
   if (rays_.empty()) return;
   blocked_.resize(rays_.size());
+  const auto start = std::chrono::steady_clock::now();
   any_hits(tree, rays_, blocked_, traversal, &stats.traversal);
+  stats.traversal_seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   stats.shadow_rays += rays_.size();
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     if (blocked_[i] == Occlusion::kNone) results[waiting_[i].slot].direct += waiting_[i].light;

@@ -46,6 +46,7 @@ class VertexShader {
   /// Point lights: I cos / r^2 times f, all of them, as the seed goes through them.
   void light_from_points(const Vertex& vertex) {
     for (const PointLight& light : scene_.emitters.point_lights()) {
+      if (sinks_.stopped) return;
       const Vec3d way = Vec3d(light.position) - vertex.point.p;
       const double distance2 = dot(way, way);
       if (!(distance2 > 0.0)) continue;
@@ -103,6 +104,7 @@ class VertexShader {
     sinks_.shadows.push(ray_origin(vertex.point, wi), target, light, state_.slot);
     if (sinks_.shadows.full()) {
       sinks_.shadows.flush(scene_.tree, settings_.traversal, sinks_.results, sinks_.stats);
+      sinks_.stopped = sinks_.stop.stop_requested();
     }
   }
 

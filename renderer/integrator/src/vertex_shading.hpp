@@ -16,6 +16,8 @@ struct ShadingSinks {
   ShadowQueue& shadows;
   PathStream& next;
   RenderStats& stats;
+  const std::stop_token& stop;
+  bool stopped = false;  ///< stop was seen: the outcome is worthless, return soon
 };
 
 /// Handles one path whose ray came back with `hit`. Light samples are queued; the queue is flushed

@@ -60,12 +60,17 @@ class PathTracer {
   PathTracer& operator=(const PathTracer&) = delete;
 
   /// Fills results[i] for starts[i]. Returns false, with results unusable, once stop is requested;
-  /// it is polled before every call into the tree.
+  /// it is polled before every call into the
+  /// tree.
   [[nodiscard]] bool trace(std::span<const PathStart> starts, std::span<PathResult> results,
                            RenderStats& stats, const std::stop_token& stop);
 
  private:
   struct Scratch;
+  struct Call;
+  void admit(Call& call);  ///< shoots camera rays while there is room under way
+  void advance(Call& call, std::size_t begin, std::size_t end);  ///< one reflection of these paths
+  void shade(Call& call, std::size_t begin, std::size_t end);
   TransportScene scene_;
   CameraRays camera_;
   PathSettings settings_;

@@ -7,13 +7,15 @@
 
 namespace raykiln::render {
 
-/// Counts of one task. Rays, paths and samples add up to the same however the work was cut; calls
-/// and traversal steps of shared calls need not.
+/// Counts of one task. Rays, paths and samples add up to the same however the work was cut; calls,
+/// steps of the walk and seconds need not.
 struct RenderStats {
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t paths = 0, non_finite = 0, negative = 0, truncated = 0;
   std::uint64_t closest_calls = 0;            ///< calls of closest_hits
   std::uint64_t short_calls_while_many_live = 0;  ///< fewer than 1024 rays although as many paths lived
+  double traversal_seconds = 0.0;  ///< in closest_hits and any_hits
+  double shading_seconds = 0.0;    ///< between them
   TraversalCounters traversal;
 };
 

@@ -1,0 +1,105 @@
+// What does one sample of one pixel cost, and where does the time go?
+// Usage: bench_scene_seconds_per_sample [samples] [side_px] [depth]
+// Two scenes: a room with glass, mirror, gloss, a lamp and a point light (30 triangles), and the same
+// room with a finely tessellated ball. One thread. The answer is checked while it is timed: brute
+// force must give the same bytes for a small tile.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "support/scene_pieces.hpp"
+
+namespace {
+
+using namespace raykiln::render;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A ball of 2 n^2 triangles in the free corner of the room.
+void add_ball(support::SceneBuilder& b, int n) {
+  const auto material = b.material(support::diffuse_material(Rgb(0.6F)));
+  const auto at = [&](int i, int j) {
+    const double theta = 3.14159265358979 * i / n, phi = 6.28318530717959 * j / n;
+    return Vec3f(Vec3d(-0.45, -0.6, 0.35) + 0.3 * Vec3d(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                                        std::sin(theta) * std::sin(phi)));
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      b.quad({at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)}, material);
+    }
+  }
+}
+
+bool brute_force_agrees(const PreparedScene& scene, RenderSettings settings) {
+  const auto blocks = blocks_for(1);
+  const PixelRect rect{settings.width / 2, settings.height / 2, settings.width / 2 + 8,
+                       settings.height / 2 + 8};
+  const TileResult tree = render_tile(scene, settings, rect, blocks, {});
+  settings.traversal = Traversal::kBruteForce;
+  const TileResult brute = render_tile(scene, settings, rect, blocks, {});
+  return tree.blocks[0].planes.planes == brute.blocks[0].planes.planes;
+}
+
+/// Tile by tile, as a worker would; returns the JSON object of the scene.
+bool measure(const char* name, const support::SceneBuilder& builder, const RenderSettings& settings,
+             std::uint64_t samples, const char* comma) {
+  const Clock::time_point build_start = Clock::now();
+  const auto scene = builder.prepare();
+  const double build_seconds = seconds_since(build_start);
+  const auto blocks = blocks_for(samples);
+  RenderStats stats;
+  Film film(settings.width, settings.height);
+  double slowest_first_block = 0.0;
+  const Clock::time_point start = Clock::now();
+  for (int y = 0; y < settings.height; y += 64) {
+    for (int x = 0; x < settings.width; x += 64) {
+      const PixelRect tile{x, y, std::min(x + 64, settings.width), std::min(y + 64, settings.height)};
+      for (const SampleBlock& block : blocks) {
+        const Clock::time_point task = Clock::now();
+        const TileResult result = render_tile(*scene, settings, tile, std::span(&block, 1), {});
+        if (block.index == 0) slowest_first_block = std::max(slowest_first_block, seconds_since(task));
+        add(stats, result.stats);
+        merge(film, result);
+      }
+    }
+  }
+  const double seconds = seconds_since(start);
+  const bool agrees = brute_force_agrees(*scene, settings);
+  const double pixel_samples =
+      static_cast<double>(settings.width) * settings.height * static_cast<double>(samples);
+  const auto rays = static_cast<double>(stats.camera_rays + stats.bounce_rays + stats.shadow_rays);
+  std::printf(
+      "  {\"scene\": \"%s\", \"prepare_seconds\": %.6f, \"seconds\": %.6f,\n"
+      "   \"seconds_per_pixel_sample\": %.4e, \"rays_per_second\": %.4e, \"rays_per_sample\": %.3f,\n"
+      "   \"traversal_share\": %.4f, \"shading_share\": %.4f, \"rest_share\": %.4f,\n"
+      "   \"slowest_first_block_seconds\": %.6f, \"short_calls_while_many_live\": %llu,\n"
+      "   \"non_finite\": %llu, \"brute_force_agrees\": %s}%s\n",
+      name, build_seconds, seconds, seconds / pixel_samples, rays / seconds, rays / pixel_samples,
+      stats.traversal_seconds / seconds, stats.shading_seconds / seconds,
+      1.0 - (stats.traversal_seconds + stats.shading_seconds) / seconds, slowest_first_block,
+      static_cast<unsigned long long>(stats.short_calls_while_many_live),
+      static_cast<unsigned long long>(stats.non_finite), agrees ? "true" : "false", comma);
+  return agrees;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto samples = static_cast<std::uint64_t>(argc > 1 ? std::atoll(argv[1]) : 16);
+  RenderSettings settings;
+  settings.width = settings.height = argc > 2 ? std::atoi(argv[2]) : 128;
+  settings.max_depth = argc > 3 ? std::atoi(argv[3]) : 8;
+  std::printf("{\"compiler\": \"%s\", \"build\": \"%s\", \"threads\": 1, \"samples\": %llu, "
+              "\"side_px\": %d, \"max_depth\": %d, \"scenes\": [\n",
+              RAYKILN_COMPILER, RAYKILN_BUILD_TYPE, static_cast<unsigned long long>(samples),
+              settings.width, settings.max_depth);
+  bool ok = measure("room", support::mixed_room(), settings, samples, ",");
+  support::SceneBuilder ball = support::mixed_room();
+  add_ball(ball, 100);
+  ok = measure("room_with_ball", ball, settings, samples, "") && ok;
+  std::printf("]}\n");
+  return ok ? 0 : 1;
+}
