@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "finish_scene.hpp"
+#include "gltf_reader.hpp"
 #include "obj_reader.hpp"
 #include "root_file.hpp"
 #include "scene_file_names.hpp"
@@ -56,10 +57,8 @@ bool read_format(SceneFormat format, const SceneFiles& files, const std::string&
                  Diagnostics& diagnostics, io::SceneDraft& draft) {
   switch (format) {
     case SceneFormat::kObj: return io::read_obj(files, name, diagnostics, draft);
-    case SceneFormat::kGltf:
-    case SceneFormat::kGlb:
-      return diagnostics.fail(ImportErrorCode::kUnsupportedVersion,
-                              "glTF is not read by this version", name);
+    case SceneFormat::kGltf: return io::read_gltf(files, name, diagnostics, draft);
+    case SceneFormat::kGlb: return io::read_glb(files, name, diagnostics, draft);
   }
   return false;
 }

@@ -110,6 +110,8 @@ std::size_t JsonAt::size() const { return value_->is_structured() ? value_->size
 
 bool JsonAt::has(const char* key) const { return is_object() && value_->contains(key); }
 
+bool JsonAt::is_text(const char* key) const { return has(key) && value_->at(key).is_string(); }
+
 JsonAt JsonAt::member(const std::string& key) const {
   return {value_->at(key), pointer_ + "/" + escaped(key), *file_, *diagnostics_};
 }
@@ -156,10 +158,16 @@ std::optional<std::uint64_t> JsonAt::integer() const {
   return std::nullopt;
 }
 
-std::optional<std::string> JsonAt::text() const {
-  if (value_->is_string()) return value_->get<std::string>();
+std::optional<std::string_view> JsonAt::text_view() const {
+  if (value_->is_string()) return std::string_view(value_->get_ref<const std::string&>());
   fail(ImportErrorCode::kWrongType, "a string is expected here");
   return std::nullopt;
+}
+
+std::optional<std::string> JsonAt::text() const {
+  const auto view = text_view();
+  if (!view) return std::nullopt;
+  return std::string(*view);
 }
 
 std::optional<std::vector<double>> JsonAt::numbers(std::size_t count) const {

@@ -56,6 +56,7 @@ class JsonAt {
   [[nodiscard]] std::vector<std::string> keys() const;
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] bool has(const char* key) const;
+  [[nodiscard]] bool is_text(const char* key) const;
   [[nodiscard]] std::optional<JsonAt> find(const char* key) const;
   [[nodiscard]] JsonAt member(const std::string& key) const;
   [[nodiscard]] JsonAt element(std::size_t index) const;
@@ -66,6 +67,8 @@ class JsonAt {
   [[nodiscard]] std::optional<double> number() const;
   [[nodiscard]] std::optional<std::uint64_t> integer() const;
   [[nodiscard]] std::optional<std::string> text() const;
+  /// As text(), without a copy: valid while the document lives.
+  [[nodiscard]] std::optional<std::string_view> text_view() const;
   /// Exactly `size` numbers.
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::size_t size) const;
 

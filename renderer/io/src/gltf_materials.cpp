@@ -1,0 +1,145 @@
+#include "gltf_materials.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "material_mapping.hpp"
+
+namespace raykiln::render::io {
+namespace {
+
+constexpr double kLargestWeight = 1e6;
+
+void note_texture(const JsonAt& at, const char* key) {
+  if (!at.has(key)) return;
+  at.warn(ImportWarningCode::kIgnoredTexture,
+          "textures are not supported yet: " + std::string(key) + " is ignored, factors are used");
+}
+
+void set_base_color(const JsonAt& at, const char* key, GltfMaterial& material) {
+  const auto found = at.find(key);
+  if (!found) return;
+  const auto v = found->numbers(4);
+  if (!v) return;
+  for (const double component : *v) {
+    if (component >= 0.0 && component <= kLargestWeight) continue;
+    found->fail(ImportErrorCode::kInvalidValue, "a component is outside of its range");
+    return;
+  }
+  material.base_color = Rgbd((*v)[0], (*v)[1], (*v)[2]);
+  material.alpha = std::min((*v)[3], 1.0);
+}
+
+void read_metallic_roughness(const JsonAt& at, GltfMaterial& material) {
+  set_base_color(at, "baseColorFactor", material);
+  material.metallic = at.number_in("metallicFactor", 1.0, 0.0, 1.0);
+  material.roughness = at.number_in("roughnessFactor", 1.0, 0.0, 1.0);
+  note_texture(at, "baseColorTexture");
+  note_texture(at, "metallicRoughnessTexture");
+}
+
+// Written as a dielectric whose reflectance is the specular colour.
+void read_specular_glossiness(const JsonAt& at, GltfMaterial& material) {
+  set_base_color(at, "diffuseFactor", material);
+  material.metallic = 0.0;
+  material.roughness = 1.0 - at.number_in("glossinessFactor", 1.0, 0.0, 1.0);
+  material.specular_color = at.vec3_in("specularFactor", Vec3d(1.0), 0.0, 1.0) / 0.04;
+  note_texture(at, "diffuseTexture");
+  note_texture(at, "specularGlossinessTexture");
+}
+
+void read_extensions(const JsonAt& at, GltfMaterial& material) {
+  const auto extensions = at.object("extensions");
+  if (!extensions) return;
+  if (const auto e = extensions->object("KHR_materials_emissive_strength")) {
+    material.emissive_strength = e->number_in("emissiveStrength", 1.0, 0.0, 1e12);
+  }
+  if (const auto e = extensions->object("KHR_materials_ior")) {
+    const double ior = e->number_or("ior", 1.5);
+    if (ior != 0.0 && !(ior >= 1.0 && ior <= 1e6)) {
+      e->fail(ImportErrorCode::kInvalidValue, "ior is 0 or at least 1");
+    }
+    material.ior = ior == 0.0 ? 1e6 : ior;  // 0 stands for "reflects everything"
+  }
+  if (const auto e = extensions->object("KHR_materials_transmission")) {
+    material.transmission = e->number_in("transmissionFactor", 0.0, 0.0, 1.0);
+    note_texture(*e, "transmissionTexture");
+  }
+  if (const auto e = extensions->object("KHR_materials_specular")) {
+    material.specular = e->number_in("specularFactor", 1.0, 0.0, 1.0);
+    material.specular_color = e->vec3_in("specularColorFactor", Vec3d(1.0), 0.0, kLargestWeight);
+    note_texture(*e, "specularTexture");
+    note_texture(*e, "specularColorTexture");
+  }
+  if (const auto e = extensions->object("KHR_materials_pbrSpecularGlossiness")) {
+    read_specular_glossiness(*e, material);
+  }
+}
+
+void read_emission(const JsonAt& at, GltfMaterial& material) {
+  material.emissive = at.vec3_in("emissiveFactor", Vec3d(0.0), 0.0, kLargestWeight);
+  if (!at.has("emissiveTexture") || material.emissive == Rgbd(0.0)) return;
+  material.emissive = Rgbd(0.0);
+  at.warn(ImportWarningCode::kIgnoredTexture,
+          "textures are not supported yet: emission with an emissiveTexture is left out, because "
+          "the texture decides where the surface glows");
+}
+
+void apply_alpha_mode(const JsonAt& at, GltfMaterial& material) {
+  const std::string mode = at.text_or("alphaMode", "OPAQUE");
+  if (mode == "OPAQUE") {
+    material.alpha = 1.0;
+  } else if (mode == "MASK") {
+    material.alpha = material.alpha < at.number_or("alphaCutoff", 0.5) ? 0.0 : 1.0;
+  } else if (mode != "BLEND") {
+    at.member("alphaMode").fail(ImportErrorCode::kInvalidValue, "there is no alpha mode " + in_quotes(mode));
+  }
+}
+
+std::string unique_name(const JsonAt& at, std::size_t index, const MaterialTable& table) {
+  std::string name = clean_text(at.text_or("name", ""), kMaxNameBytes);
+  if (name.empty()) name = "material " + std::to_string(index);
+  std::string candidate = name;
+  for (std::size_t i = index; table.contains(candidate); ++i) {
+    candidate = name + " #" + std::to_string(i);
+  }
+  return candidate;
+}
+
+std::uint32_t read_material(const JsonAt& at, std::size_t index, SceneDraft& draft) {
+  GltfMaterial material;
+  material.name = unique_name(at, index, draft.materials);
+  if (const auto pbr = at.object("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
+  read_emission(at, material);
+  read_extensions(at, material);
+  apply_alpha_mode(at, material);
+  note_texture(at, "normalTexture");
+  note_texture(at, "occlusionTexture");
+  const std::uint32_t id = draft.materials.intern(material.name);
+  draft.materials.materials[id] = to_material(material);
+  draft.materials.defined[id] = true;
+  return id;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::uint32_t>> read_gltf_materials(const JsonAt& root,
+                                                              SceneDraft& draft) {
+  std::vector<std::uint32_t> ids;
+  const auto materials = root.array("materials");
+  if (root.diagnostics().failed()) return std::nullopt;
+  if (!materials) return ids;
+  if (materials->size() > root.diagnostics().limits().max_materials) {
+    materials->fail(ImportErrorCode::kLimitExceeded, "too many materials");
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < materials->size(); ++i) {
+    const JsonAt at = materials->element(i);
+    if (!at.expect_object()) return std::nullopt;
+    ids.push_back(read_material(at, i, draft));
+    if (!root.diagnostics().may_go_on()) return std::nullopt;
+  }
+  return ids;
+}
+
+}  // namespace raykiln::render::io
