@@ -1,0 +1,92 @@
+"""A real raykilnd on a free port with a store of its own, started and ended by the test."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+BIN = Path(os.environ.get("RAYKILN_BIN_DIR", ROOT / "build" / "test" / "bin"))
+# Sanitized builds run many times slower; limits on time stretch by this factor.
+SLOW = float(os.environ.get("RAYKILN_SLOW", "1"))
+_LISTENING = re.compile(r"http://127\.0\.0\.1:(\d+)")
+
+
+class Daemon:
+    def __init__(self, store: Path, workers: int = 2, options=(), environment=None):
+        self.store = Path(store)
+        self.workers = workers
+        self.options = list(options)
+        self.environment = environment or {}
+        self.process = None
+        self.port = None
+        self.log_path = self.store.parent / f"{self.store.name}.log"
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def log(self) -> str:
+        return self.log_path.read_text(errors="replace")
+
+    def start(self) -> "Daemon":
+        command = [str(BIN / "raykilnd"), "--port", "0", "--store", str(self.store),
+                   "--workers", str(self.workers), *self.options]
+        begin = self.log_path.stat().st_size if self.log_path.exists() else 0
+        with open(self.log_path, "ab") as sink:
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=sink,
+                                            stderr=sink, env={**os.environ, **self.environment})
+        self.port = self._wait_for_port(begin, time.monotonic() + 10 * SLOW)
+        return self
+
+    def _wait_for_port(self, begin: int, deadline: float) -> int:
+        while time.monotonic() < deadline:
+            found = _LISTENING.search(self.log[begin:])
+            if found:
+                return int(found.group(1))
+            if self.process.poll() is not None:
+                break
+            time.sleep(0.01)
+        self.kill()
+        raise AssertionError(f"raykilnd did not say where it listens:\n{self.log}")
+
+    def stop(self, timeout: float = 20.0) -> int:
+        """SIGTERM; returns the exit code."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        try:
+            return self.process.wait(timeout * SLOW)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            raise AssertionError(f"raykilnd did not stop after SIGTERM:\n{self.log[-4000:]}")
+
+    def kill(self):
+        """SIGKILL: what a power cut looks like."""
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+
+    def alive(self) -> bool:
+        return self.process.poll() is None
+
+    def status_kib(self, field: str = "VmRSS") -> int:
+        """A line of /proc/PID/status, in KiB."""
+        for line in Path(f"/proc/{self.process.pid}/status").read_text().splitlines():
+            if line.startswith(field + ":"):
+                return int(line.split()[1])
+        raise AssertionError(f"no {field} in /proc/{self.process.pid}/status")
+
+    def reset_peak(self):
+        """Makes VmHWM start again from the present size."""
+        Path(f"/proc/{self.process.pid}/clear_refs").write_text("5")
+
+    def files(self) -> dict:
+        """Relative path -> size of every file in the store but the database."""
+        found = {}
+        for path in self.store.rglob("*"):
+            if path.is_file() and ".sqlite" not in path.name and ".db" not in path.name:
+                found[str(path.relative_to(self.store))] = path.stat().st_size
+        return found

@@ -1,0 +1,209 @@
+"""raykiln, the command line program: what it prints, writes and returns."""
+
+import json
+import os
+import subprocess
+import zipfile
+
+import numpy as np
+import pytest
+
+from support import scenes
+from support.daemon import BIN, ROOT, SLOW
+from support.image_files import read_exr, read_png
+
+PROGRAM = str(BIN / "raykiln")
+
+
+def raykiln(*words, timeout=60.0, **options):
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("RAYKILN_")}
+    return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=False,
+                          timeout=timeout * SLOW, stdin=subprocess.DEVNULL,
+                          env=environment, **options)
+
+
+def lines_of_json(text: str) -> list:
+    return [json.loads(line) for line in text.splitlines()]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A scene as a folder of files."""
+    target = tmp_path / "scene"
+    target.mkdir()
+    for name, content in scenes.box_files("cli").items():
+        (target / name).write_text(content)
+    return target
+
+
+@pytest.fixture
+def to(api):
+    """The option that names the shared daemon."""
+    return ("--server", api.daemon.url)
+
+
+def test_help_names_the_commands_and_exit_codes():
+    shown = raykiln("--help")
+    assert shown.returncode == 0
+    for word in ("render", "submit", "watch", "fetch", "cancel", "scenes", "jobs", "health"):
+        assert word in shown.stdout, word
+    assert "exit" in shown.stdout.lower(), "the exit codes belong to the help"
+
+
+def test_version():
+    shown = raykiln("--version")
+    assert shown.returncode == 0 and "0.1.0" in shown.stdout
+
+
+def test_render_without_a_daemon(folder, tmp_path):
+    out = tmp_path / "out.exr"
+    done = raykiln("render", folder / "box.obj", "-o", out, "--samples", 4, "--size", "40x30",
+                   "--threads", 2, "--seed", 5, "--depth", 3)
+    assert done.returncode == 0, done.stderr
+    picture = read_exr(out.read_bytes())
+    assert (picture.width, picture.height) == (40, 30) and picture.pixels.std() > 0.01
+
+
+def test_render_writes_png_too_and_reads_zip_and_glb(folder, tmp_path):
+    (tmp_path / "box.zip").write_bytes(scenes.box_zip())
+    (tmp_path / "one.glb").write_bytes(scenes.triangle_glb())
+    for name in ("box.zip", "one.glb"):
+        out = tmp_path / f"{name}.png"
+        done = raykiln("render", tmp_path / name, "-o", out, "--samples", 1, "--size", "16x12")
+        assert done.returncode == 0, done.stderr
+        assert read_png(out.read_bytes()).width == 16
+
+
+def test_render_gives_the_same_bytes_for_any_number_of_threads(folder, tmp_path):
+    pictures = []
+    for threads in (1, 2, 7):
+        out = tmp_path / f"{threads}.exr"
+        assert raykiln("render", folder / "box.obj", "-o", out, "--samples", 20, "--size", "70x50",
+                       "--threads", threads, "--seed", 1).returncode == 0
+        pictures.append(read_exr(out.read_bytes()).pixels)
+    assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[2])
+
+
+def test_the_daemon_and_the_cli_make_the_same_picture(api, folder, to, tmp_path):
+    local, remote = tmp_path / "local.exr", tmp_path / "remote.exr"
+    options = ("--samples", 8, "--size", "48x36", "--seed", 9)
+    assert raykiln("render", folder / "box.obj", "-o", local, *options).returncode == 0
+    submitted = raykiln("submit", folder, *to, *options, "--wait", "--quiet")
+    assert submitted.returncode == 0, submitted.stderr
+    job = submitted.stdout.split()[-1]
+    assert raykiln("fetch", job, *to, "-o", remote).returncode == 0
+    one, other = read_exr(local.read_bytes()), read_exr(remote.read_bytes())
+    assert np.array_equal(one.pixels, other.pixels)
+
+
+def test_render_says_where_a_scene_is_wrong(tmp_path):
+    (tmp_path / "bad.obj").write_text("v 0 0 0\nv nan 0 0\n")
+    done = raykiln("render", tmp_path / "bad.obj", "-o", tmp_path / "x.exr")
+    assert done.returncode not in (0, 2) and "bad.obj:2" in done.stderr
+    assert not (tmp_path / "x.exr").exists()
+
+
+def test_wrong_usage_has_a_code_of_its_own(folder, tmp_path):
+    codes = {raykiln(*words).returncode for words in (
+        ("frobnicate",), ("render",), ("render", folder, "--colour"),
+        ("render", folder / "box.obj", "-o", tmp_path / "a.exr", "--samples", "0"),
+        ("render", folder / "box.obj", "-o", tmp_path / "a.exr", "--size", "big"),
+        ("fetch",))}
+    assert len(codes) == 1 and codes != {0}, codes
+
+
+def test_outcomes_have_different_exit_codes(api, folder, to, tmp_path):
+    """Whatever the numbers are, a script can tell these outcomes apart."""
+    (tmp_path / "bad.obj").write_text("v nan 0 0\n")
+    outcomes = {
+        "success": raykiln("jobs", *to),
+        "wrong usage": raykiln("frobnicate"),
+        "no daemon": raykiln("jobs", "--server", "http://127.0.0.1:1"),
+        "refused": raykiln("submit", tmp_path / "bad.obj", *to),
+        "not found": raykiln("watch", "j_none", *to),
+        "cancelled": cancelled(api, folder, to),
+    }
+    codes = {name: done.returncode for name, done in outcomes.items()}
+    assert codes["success"] == 0
+    assert len(set(codes.values())) == len(codes), codes
+    shown = raykiln("--help").stdout
+    for name, code in codes.items():
+        assert str(code) in shown, f"{name}: exit code {code} is not in the help"
+
+
+def cancelled(api, folder, to):
+    job = raykiln("submit", folder, *to, "--size", "512x512", "--samples", 1048576, "--quiet")
+    assert job.returncode == 0, job.stderr
+    job = job.stdout.split()[-1]
+    stopped = raykiln("cancel", job, *to)
+    assert stopped.returncode == 0, stopped.stderr
+    return raykiln("watch", job, *to)
+
+
+def test_json_output_is_the_contract(api, folder, to):
+    submitted = raykiln("submit", folder, *to, "--samples", 2, "--size", "24x16", "--wait", "--json")
+    assert submitted.returncode == 0, submitted.stderr
+    job = lines_of_json(submitted.stdout)[-1]
+    assert job["state"] == "completed"
+    watched = lines_of_json(raykiln("watch", job["id"], *to, "--json").stdout)
+    assert watched[-1]["state"] == "completed"
+    for command, key in (("jobs", "jobs"), ("scenes", "scenes")):
+        listed = raykiln(command, *to, "--json")
+        assert listed.returncode == 0
+        found = lines_of_json(listed.stdout)
+        entries = found[0][key] if key in found[0] else found
+        assert entries and all("id" in entry for entry in entries)
+    problem = raykiln("watch", "j_none", *to, "--json")
+    assert "job_not_found" in problem.stdout + problem.stderr
+
+
+def test_submit_uploads_once(api, folder, to):
+    first = raykiln("submit", folder, *to, "--quiet", "--samples", 1, "--size", "8x8")
+    count = len(api.json("/v1/scenes", params={"limit": 200})["scenes"])
+    second = raykiln("submit", folder, *to, "--quiet", "--samples", 1, "--size", "8x8")
+    assert first.returncode == second.returncode == 0 and first.stdout != second.stdout
+    assert len(api.json("/v1/scenes", params={"limit": 200})["scenes"]) == count
+
+
+def test_fetch_writes_nothing_on_failure(api, to, tmp_path):
+    out = tmp_path / "none.png"
+    done = raykiln("fetch", "j_none", *to, "-o", out)
+    assert done.returncode != 0 and not out.exists() and "j_none" in done.stderr
+
+
+def test_an_output_that_cannot_be_written(folder, tmp_path):
+    done = raykiln("render", folder / "box.obj", "-o", tmp_path / "no" / "dir" / "a.exr",
+                   "--samples", 1, "--size", "8x8")
+    assert done.returncode != 0 and "a.exr" in done.stderr
+
+
+def test_no_progress_bar_without_a_terminal(folder, tmp_path):
+    done = raykiln("render", folder / "box.obj", "-o", tmp_path / "a.exr", "--samples", 1,
+                   "--size", "8x8")
+    assert "\r" not in done.stdout + done.stderr and "\033" not in done.stdout + done.stderr
+
+
+def test_the_bundled_demo_renders(tmp_path):
+    demo = ROOT / "server" / "app" / "demo"
+    out = tmp_path / "demo.exr"
+    done = raykiln("render", demo / "demo.obj", "-o", out, "--samples", 4, "--size", "64x48")
+    assert done.returncode == 0, done.stderr
+    picture = read_exr(out.read_bytes())
+    assert np.isfinite(picture.pixels).all() and picture.pixels.std() > 0.01
+    assert "warning" not in done.stderr.lower(), done.stderr
+
+
+def test_health(api, to):
+    assert raykiln("health", *to).returncode == 0
+    assert raykiln("health", "--server", "http://127.0.0.1:1").returncode != 0
+
+
+def test_a_zip_made_by_others(api, to, tmp_path):
+    """Debian's zip and Python's differ in flags; both must be read."""
+    path = tmp_path / "by-zip.zip"
+    for name, content in scenes.box_files("zip").items():
+        (tmp_path / name).write_text(content)
+    subprocess.run(["zip", "-q", str(path), *scenes.box_files()], cwd=tmp_path, check=True)
+    assert zipfile.ZipFile(path).namelist()
+    done = raykiln("submit", path, *to, "--samples", 1, "--size", "8x8", "--wait")
+    assert done.returncode == 0, done.stderr

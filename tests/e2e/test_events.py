@@ -1,0 +1,134 @@
+"""Server-sent events: snapshots, order, the final state, readers that are slow or many."""
+
+import json
+import threading
+import time
+
+import pytest
+
+from support import scenes
+from support.api import FINAL
+from support.daemon import SLOW
+
+
+def test_the_first_event_is_a_full_snapshot_and_ids_rise(api, samples):
+    job = api.job(samples["grid"], width=256, height=256, stop={"samples": 32})
+    with api.events(job) as stream:
+        events = list(stream.events())
+    assert stream.headers["content-type"].split(";")[0] == "text/event-stream"
+    assert all(event.kind == "job" and set(event.data) >= {"id", "state", "progress", "statistics",
+                                                           "request", "image"} for event in events)
+    revisions = [int(event.id) for event in events]
+    assert revisions == sorted(set(revisions)), "revisions rise strictly"
+    assert revisions == [event.data["revision"] for event in events]
+    assert [event.data["state"] in FINAL for event in events[-2:]][-1:] == [True]
+    assert not any(event.data["state"] in FINAL for event in events[:-1])
+    fractions = [event.data["progress"]["fraction"] for event in events]
+    assert fractions == sorted(fractions) and fractions[-1] == 1
+
+
+def test_at_most_ten_events_a_second(api, samples):
+    job = api.job(samples["grid"], width=256, height=256, stop={"samples": 256})
+    with api.events(job) as stream:
+        times = [event.arrived for event in stream.events()]
+    assert len(times) >= 3
+    assert len(times) <= 4 + 10.5 * (times[-1] - times[0])
+
+
+def test_a_finished_job_gives_its_final_state_at_once(api, samples):
+    job = api.job(samples["box"])
+    final = api.wait(job)
+    with api.events(job) as stream:
+        events = list(stream.events())
+    assert [event.data for event in events] == [final]
+
+
+def test_last_event_id_of_the_final_state_ends_with_204(api, samples):
+    job = api.job(samples["box"])
+    revision = api.wait(job)["revision"]
+    seen = api.get(f"/v1/jobs/{job}/events", headers={"Last-Event-ID": str(revision)})
+    assert (seen.status_code, seen.content) == (204, b"")
+    for older in (str(revision - 1), "nonsense", "-1", "9" * 40):
+        with api.events(job, last_event_id=older) as stream:
+            assert stream.last().data["state"] == "completed"
+
+
+def test_reconnecting_in_the_middle_starts_with_the_newest(launch):
+    api = launch()
+    job = api.job(api.scene(scenes.grid_zip(60)), width=512, height=512, stop={"samples": 65536})
+    with api.events(job) as stream:
+        first = next(stream.events())
+    later = api.wait_until(job, lambda snapshot: snapshot["revision"] > int(first.id) + 2)
+    with api.events(job, last_event_id=first.id) as stream:
+        event = next(stream.events())
+    assert int(event.id) >= later["revision"]
+    api.cancel(job)
+
+
+def test_heartbeat_in_silence(launch):
+    """A queued job behind a running one says nothing; the stream shows a sign of life."""
+    api = launch(workers=1)
+    scene = api.scene(scenes.box_zip())
+    job = api.job(scene, width=1, height=1, stop={"samples": 1048576}, max_depth=64)
+    with api.events(job, timeout=15 * SLOW) as stream:
+        for event in stream.events():
+            if stream.comments or event.data["state"] in FINAL:
+                break
+    # Either the job was never silent for 10 s, or a comment line came in time; what must
+    # not happen is the socket's timeout, which is an exception above.
+    api.request("POST", f"/v1/jobs/{job}/cancel")
+
+
+@pytest.mark.measured
+def test_a_reader_that_never_reads_slows_nothing_and_gets_the_final_state(launch):
+    api = launch()
+    scene = api.scene(scenes.grid_zip(60))
+    request = {"width": 512, "height": 512, "stop": {"samples": 48}}
+    alone = api.wait(api.job(scene, **request))["elapsed_seconds"]
+    job = api.job(scene, **request)
+    stalled = [api.events(job, receive_buffer=2048) for _ in range(20)]
+    watched = api.wait(job)
+    assert watched["elapsed_seconds"] <= 1.25 * alone + 0.25
+    for stream in stalled:
+        with stream:
+            assert stream.last().data["revision"] == watched["revision"]
+
+
+@pytest.mark.measured
+def test_memory_of_many_readers_is_bounded(launch):
+    api = launch(options=["--max-connections", "600", "--max-streams", "500"])
+    job = api.job(api.scene(scenes.grid_zip(60)), width=256, height=256,
+                  stop={"samples": 1048576})
+    api.wait_until(job, lambda snapshot: snapshot["image"])
+    count, before = 200, api.daemon.status_kib()
+    streams = [api.events(job, receive_buffer=2048) for _ in range(count)]
+    for stream in streams:
+        stream.read_head()
+    time.sleep(1.5)
+    first = api.daemon.status_kib()
+    time.sleep(3)
+    later = api.daemon.status_kib()
+    api.cancel(job)
+    for stream in streams:
+        assert stream.last().data["state"] == "cancelled"
+        stream.close()
+    assert (first - before) / count <= 128, f"{(first - before) / count:.0f} KiB a client"
+    assert later - first <= 4096, f"grew by {later - first} KiB in 3 s without a reader"
+
+
+def test_the_stream_ends_without_a_final_event_when_the_server_stops(launch):
+    api = launch()
+    job = api.job(api.scene(scenes.grid_zip(60)), width=512, height=512,
+                  stop={"samples": 1048576})
+    seen = []
+
+    def read():
+        with api.events(job) as stream:
+            seen.extend(event.data["state"] for event in stream.events())
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    api.wait_until(job, lambda snapshot: snapshot["state"] == "rendering")
+    assert api.daemon.stop() == 0
+    reader.join(10)
+    assert not reader.is_alive() and seen and not set(seen) & set(FINAL), json.dumps(seen)
