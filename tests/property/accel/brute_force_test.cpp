@@ -57,6 +57,8 @@ struct Family {
   TestMesh (*make)(std::uint64_t seed);
 };
 
+void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
+
 class BruteForce : public testing::TestWithParam<Family> {};
 
 INSTANTIATE_TEST_SUITE_P(

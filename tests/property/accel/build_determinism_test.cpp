@@ -1,1 +1,126 @@
+// The same bytes for any runner, and a build that lets itself be stopped.
+#include <chrono>
 
+#include "subtree_builder.hpp"
+#include "support/accel_testing.hpp"
+
+namespace raykiln::test {
+namespace {
+
+using render::KdTree;
+
+template <typename T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+void expect_same(const KdTree& a, const KdTree& b) {
+  EXPECT_TRUE(same_bytes(a.nodes, b.nodes));
+  EXPECT_TRUE(same_bytes(a.blocks8, b.blocks8));
+  EXPECT_TRUE(same_bytes(a.blocks16, b.blocks16));
+  EXPECT_EQ(a.opaque_bits, b.opaque_bits);
+  const auto& s = a.stats;
+  const auto& t = b.stats;
+  EXPECT_EQ(s.sah_cost, t.sah_cost);
+  EXPECT_EQ(s.events_swept, t.events_swept);
+  EXPECT_EQ(s.events_moved, t.events_moved);
+  EXPECT_EQ(s.keys_sorted_passes, t.keys_sorted_passes);
+  EXPECT_EQ(s.clips, t.clips);
+  EXPECT_EQ(s.budget_reached, t.budget_reached);
+}
+
+TEST(BuildDeterminism, SameTreeForAnyNumberOfThreads) {
+  const std::array<TestMesh, 3> meshes{terrain(260), soup(100'000), slivers(40'000)};
+  for (const TestMesh& mesh : meshes) {
+    ASSERT_GT(mesh.triangles.size(), render::kParallelMin) << "tasks must be made";
+    const auto serial = build(mesh);
+    for (const int threads : {2, 3, 8}) {
+      ThreadRunner runner(threads);
+      const auto tree = render::build_kdtree(mesh.view(), {}, runner);
+      ASSERT_NE(tree, nullptr);
+      expect_same(*serial, *tree);
+    }
+  }
+}
+
+// Runs everything from last to first on one thread but claims to be parallel.
+class BackwardRunner final : public render::TaskRunner {
+ public:
+  void run(std::span<const std::function<void()>> tasks) override {
+    for (std::size_t i = tasks.size(); i-- > 0;) tasks[i]();
+  }
+  [[nodiscard]] int concurrency() const override { return 4; }
+  void progress(double fraction) override {
+    EXPECT_GE(fraction, 0.0);
+    EXPECT_LE(fraction, 1.0);
+    last_progress = fraction;
+    ++reports;
+  }
+  double last_progress = 0.0;
+  int reports = 0;
+};
+
+TEST(BuildDeterminism, OrderOfTasksDoesNotMatterAndProgressIsReported) {
+  const TestMesh mesh = soup(80'000);
+  BackwardRunner runner;
+  const auto tree = render::build_kdtree(mesh.view(), {}, runner);
+  expect_same(*build(mesh), *tree);
+  EXPECT_EQ(runner.last_progress, 1.0);
+  EXPECT_GT(runner.reports, 20);
+  EXPECT_LE(runner.reports, 102) << "called rarely";
+}
+
+// Stops at the n-th question; remembers how long the build went on afterwards.
+class StoppingRunner final : public render::TaskRunner {
+ public:
+  StoppingRunner(std::int64_t questions, int claimed) : left_(questions), claimed_(claimed) {}
+  void run(std::span<const std::function<void()>> tasks) override {
+    for (const auto& task : tasks) task();
+  }
+  [[nodiscard]] bool stop_requested() const override {
+    if (--left_ > 0) return false;
+    if (left_ == 0) asked_ = std::chrono::steady_clock::now();
+    return true;
+  }
+  [[nodiscard]] int concurrency() const override { return claimed_; }
+  [[nodiscard]] double seconds_since_stop() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - asked_).count();
+  }
+  [[nodiscard]] std::int64_t questions_left() const { return left_; }
+
+ private:
+  mutable std::int64_t left_;
+  mutable std::chrono::steady_clock::time_point asked_;
+  int claimed_;
+};
+
+TEST(BuildDeterminism, StopAtAnyMomentGivesNothing) {
+  const TestMesh mesh = soup(40'000);
+  constexpr std::int64_t kEndless = 1LL << 60;
+  for (const int claimed : {1, 4}) {
+    StoppingRunner counting(kEndless, claimed);
+    ASSERT_NE(render::build_kdtree(mesh.view(), {}, counting), nullptr);
+    const std::int64_t questions = kEndless - counting.questions_left();
+    EXPECT_GT(questions, 1000) << "asked often";
+    for (int i = 0; i < 8; ++i) {
+      StoppingRunner runner(1 + (questions - 1) * i / 7, claimed);
+      EXPECT_EQ(render::build_kdtree(mesh.view(), {}, runner), nullptr) << i;
+    }
+  }
+}
+
+TEST(BuildDeterminism, StopIsQuickInALargeBuild) {
+  const TestMesh mesh = soup(500'000);
+  double slowest = 0.0;
+  for (const std::int64_t question : {1, 50, 200, 400, 800, 1500, 3000}) {
+    StoppingRunner runner(question, 1);
+    ASSERT_EQ(render::build_kdtree(mesh.view(), {}, runner), nullptr);
+    slowest = std::max(slowest, runner.seconds_since_stop());
+  }
+  RecordProperty("slowest_stop_ms", static_cast<int>(slowest * 1000.0));
+  EXPECT_LT(slowest, 0.5) << "a loaded machine gets five times the 100 ms that are wanted";
+}
+
+}  // namespace
+}  // namespace raykiln::test
