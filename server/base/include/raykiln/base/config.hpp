@@ -18,8 +18,9 @@ struct JobLimits {
   std::uint64_t max_samples = 1'048'576;        ///< a pixel
   int max_depth = 64;                           ///< reflections after the first hit
   int max_branches = 16;
-  std::uint64_t max_branch_paths = 1'000'000;   ///< branches ^ max_depth
+  std::uint64_t max_branch_paths = 65'536;      ///< branches ^ max_depth, a sample
   int max_tile = 4'096;                         ///< pixels a side
+  std::uint64_t max_tiles = 1'000'000;          ///< of one film
   int max_priority = 100;                       ///< 1 .. this
   std::size_t max_name_bytes = 200;
 };

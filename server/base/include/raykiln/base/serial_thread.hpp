@@ -24,10 +24,9 @@ class SerialThread {
   bool post(std::function<void()> closure);
   bool post_after(std::chrono::milliseconds delay, std::function<void()> closure);
 
-  /// Runs what was posted before, drops what is delayed, joins. Not from the thread itself.
+  /// Runs what was posted before, drops what is delayed, joins. Once, not from the thread
+  /// itself.
   void stop();
-
-  [[nodiscard]] bool runs_here() const { return std::this_thread::get_id() == thread_.get_id(); }
 
  private:
   void loop();

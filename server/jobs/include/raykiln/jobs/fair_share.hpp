@@ -25,6 +25,9 @@ class FairShare {
   void charge(const std::string& id, double seconds);
 
  private:
+  /// Worker seconds that a member without work for a while may catch up.
+  static constexpr double kLargestCredit = 0.25;
+
   struct Member {
     double weight = 1.0;
     double pass = 0.0;  ///< seconds received / weight

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <span>
+#include <set>
+#include <utility>
 #include <vector>
 
 namespace raykiln::server {
@@ -47,8 +49,8 @@ struct TaskLength {
 class TilePlan {
  public:
   /// `block_samples`: samples of each block, in order; at least one block.
-  TilePlan(int width, int height, int tile, std::vector<std::uint32_t> block_samples,
-           TaskLength length);
+  TilePlan(int width, int height, int tile, const std::vector<std::uint32_t>& block_samples,
+           const TaskLength& length);
 
   /// Next item, or nothing while all that is left is in flight.
   [[nodiscard]] std::optional<WorkItem> next();
@@ -60,8 +62,15 @@ class TilePlan {
   /// The item came to nothing: it is handed out again, with attempt + 1, before anything else.
   bool failed(const WorkItem& item);
 
-  [[nodiscard]] bool in_flight(const WorkItem& item) const;
+  /// Nothing is handed out or merged any more.
+  void abandon();
+
+  [[nodiscard]] bool in_flight(const WorkItem& item) const { return flights_.contains(item.id); }
   [[nodiscard]] std::size_t items_in_flight() const { return flights_.size(); }
+  /// True when next() would give an item.
+  [[nodiscard]] bool has_work() const { return !again_.empty() || !ready_.empty(); }
+  /// Expected seconds of an item; 0 while unknown.
+  [[nodiscard]] double expected_seconds(const WorkItem& item) const;
   [[nodiscard]] bool done() const { return tiles_done_ == static_cast<int>(tiles_.size()); }
 
   [[nodiscard]] int tiles() const { return static_cast<int>(tiles_.size()); }
@@ -76,29 +85,31 @@ class TilePlan {
   struct Tile {
     TileRect rect;
     std::size_t next_block = 0;  ///< first block that is not merged
-    std::size_t pass_end = 0;    ///< end of the pass that is being handed out
-    int next_row = 0;            ///< first row of the pass not handed out; y1: all are
+    std::size_t pass_end = 0;    ///< end of the pass that is being handed out; next_block: none is
+    int next_row = 0;            ///< first row of that pass not handed out
     int bands_in_flight = 0;
+    double seconds_per_sample = 0.0;  ///< of the last item that held this tile; 0: unknown
   };
-  struct Flight {
-    WorkItem item;
-    std::uint64_t samples = 0;
-  };
+  [[nodiscard]] std::uint64_t samples_in(std::size_t first, std::size_t end) const {
+    return samples_before_[end] - samples_before_[first];
+  }
+  [[nodiscard]] std::size_t blocks() const { return samples_before_.size() - 1; }
+  [[nodiscard]] double cost_of_sample(const Tile& tile) const;
+  [[nodiscard]] double part_seconds(const WorkItem& item, const WorkItem::Part& part) const;
   [[nodiscard]] std::size_t pick_pass_end(const Tile& tile) const;
-  [[nodiscard]] std::uint64_t samples_in(std::size_t first, std::size_t end) const;
-  [[nodiscard]] int band_rows(const Tile& tile) const;
-  [[nodiscard]] bool ready(const Tile& tile) const;
-  void take_parts(WorkItem& item, std::size_t tile_index);
-  void end_band(std::size_t tile_index);
-  [[nodiscard]] std::optional<std::size_t> next_ready_tile();
+  [[nodiscard]] int pick_rows(const Tile& tile) const;
+  [[nodiscard]] bool has_room(const WorkItem& item, std::uint64_t held_pixels, const Tile& tile) const;
+  void open_pass(Tile& tile) const;
+  void take_band(WorkItem& item);
+  void end_band(const WorkItem::Part& part);
+  void learn(const WorkItem& item, double seconds);
 
-  std::vector<std::uint32_t> block_samples_;
+  std::vector<std::uint64_t> samples_before_;  ///< [b]: samples of all blocks before b
   TaskLength length_;
   std::vector<Tile> tiles_;
+  std::set<std::pair<std::size_t, std::size_t>> ready_;  ///< (next block, tile) with rows to give
   std::vector<WorkItem> again_;
-  std::vector<Flight> flights_;
-  std::size_t cursor_ = 0;       ///< tiles before it have had their turn in this round
-  std::size_t round_block_ = 0;  ///< tiles whose next block is below it come first
+  std::map<std::uint64_t, WorkItem> flights_;
   std::uint64_t next_id_ = 1;
   int tiles_started_ = 0, tiles_done_ = 0;
   std::uint64_t samples_done_ = 0, samples_target_ = 0;

@@ -1,0 +1,150 @@
+#include "raykiln/jobs/job_request.hpp"
+
+#include <cmath>
+
+#include "raykiln/base/ids.hpp"
+#include "raykiln/base/record.hpp"
+#include "raykiln/base/sha256.hpp"
+#include "request_record.hpp"
+
+namespace raykiln::server {
+namespace {
+
+/// Larger coordinates than this are no camera of any scene that the importer takes.
+constexpr double kMaxCoordinate = 1e15;
+
+Error wrong(std::string where, std::string message) {
+  return {ErrorKind::kInvalid, "invalid_request", std::move(message), std::move(where)};
+}
+
+template <class Number>
+std::optional<Error> outside(const char* where, Number value, Number low, Number high) {
+  if (value >= low && value <= high) return std::nullopt;
+  return wrong(where, "must be from " + std::to_string(low) + " to " + std::to_string(high));
+}
+
+bool is_point(const std::array<double, 3>& p) {
+  for (const double c : p) {
+    if (!(std::abs(c) <= kMaxCoordinate)) return false;
+  }
+  return true;
+}
+
+std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const std::array<double, 3>& a) { return std::hypot(a[0], a[1], a[2]); }
+
+std::optional<Error> camera_error(const OwnCamera& camera) {
+  if (!is_point(camera.eye)) return wrong("/camera/eye", "must be three finite numbers");
+  if (!is_point(camera.look_at)) return wrong("/camera/look_at", "must be three finite numbers");
+  if (!is_point(camera.up)) return wrong("/camera/up", "must be three finite numbers");
+  if (!(camera.fov_deg > 0.0 && camera.fov_deg < 180.0)) {
+    return wrong("/camera/fov_deg", "must be above 0 and below 180");
+  }
+  const std::array<double, 3> forward = {camera.look_at[0] - camera.eye[0],
+                                         camera.look_at[1] - camera.eye[1],
+                                         camera.look_at[2] - camera.eye[2]};
+  if (!(length(forward) > 0.0)) return wrong("/camera/look_at", "must differ from eye");
+  const double sine = length(cross(forward, camera.up)) / (length(forward) * length(camera.up));
+  if (!(sine > 1e-6)) return wrong("/camera/up", "must not be zero or along the line of sight");
+  return std::nullopt;
+}
+
+std::optional<Error> camera_error(const CameraChoice& choice) {
+  if (const auto* index = std::get_if<int>(&choice)) {
+    if (*index < 0) return wrong("/camera", "must not be negative");
+  } else if (const auto* text = std::get_if<std::string>(&choice)) {
+    if (text->empty() || text->size() > 200) return wrong("/camera", "must have 1 to 200 bytes");
+  } else {
+    return camera_error(std::get<OwnCamera>(choice));
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> tiles_error(const JobRequest& r, const JobLimits& limits) {
+  const auto across = static_cast<std::uint64_t>((r.width + r.tile - 1) / r.tile);
+  const auto down = static_cast<std::uint64_t>((r.height + r.tile - 1) / r.tile);
+  if (across * down <= limits.max_tiles) return std::nullopt;
+  return wrong("/tile", "would cut the picture into more than " +
+                            std::to_string(limits.max_tiles) + " tiles");
+}
+
+std::optional<Error> branches_error(const JobRequest& r, const JobLimits& limits) {
+  if (r.branches == 1) return std::nullopt;
+  const double paths = std::pow(r.branches, r.max_depth);
+  if (paths <= static_cast<double>(limits.max_branch_paths)) return std::nullopt;
+  return wrong("/branches", "branches to the power of max_depth must be at most " +
+                                std::to_string(limits.max_branch_paths));
+}
+
+bool has_control(const std::string& text) {
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) return true;
+  }
+  return false;
+}
+
+std::optional<Error> name_error(const JobRequest& r, const JobLimits& limits) {
+  if (r.name.size() > limits.max_name_bytes) {
+    return wrong("/name", "must have at most " + std::to_string(limits.max_name_bytes) + " bytes");
+  }
+  if (has_control(r.name)) return wrong("/name", "must not hold control characters");
+  return std::nullopt;
+}
+
+std::optional<Error> range_error(const JobRequest& r, const JobLimits& limits) {
+  using std::uint64_t;
+  if (auto e = outside("/width", r.width, 1, limits.max_side)) return e;
+  if (auto e = outside("/height", r.height, 1, limits.max_side)) return e;
+  if (auto e = outside<uint64_t>("/stop/samples", r.stop.samples, 1, limits.max_samples)) return e;
+  if (auto e = outside("/max_depth", r.max_depth, 0, limits.max_depth)) return e;
+  if (auto e = outside("/branches", r.branches, 1, limits.max_branches)) return e;
+  if (auto e = outside("/tile", r.tile, 1, limits.max_tile)) return e;
+  return outside("/priority", r.priority, 1, limits.max_priority);
+}
+
+}  // namespace
+
+std::string_view name(PixelMode value) {
+  return value == PixelMode::kRandom ? "random" : "centre";
+}
+std::string_view name(DirectionSampling value) {
+  return value == DirectionSampling::kBsdf ? "bsdf" : "uniform_sphere";
+}
+std::string_view name(LightModel) { return "seed"; }
+
+std::optional<PixelMode> pixel_mode_named(std::string_view text) {
+  if (text == "random") return PixelMode::kRandom;
+  if (text == "centre") return PixelMode::kCentre;
+  return std::nullopt;
+}
+std::optional<DirectionSampling> direction_sampling_named(std::string_view text) {
+  if (text == "bsdf") return DirectionSampling::kBsdf;
+  if (text == "uniform_sphere") return DirectionSampling::kUniformSphere;
+  return std::nullopt;
+}
+std::optional<LightModel> light_model_named(std::string_view text) {
+  if (text == "seed") return LightModel::kSeed;
+  return std::nullopt;
+}
+
+Status validate(const JobRequest& request, const JobLimits& limits) {
+  if (!is_sha256_hex(request.scene)) {
+    return wrong("/scene", "must be 64 lower-case hexadecimal digits");
+  }
+  if (auto e = name_error(request, limits)) return *e;
+  if (auto e = camera_error(request.camera)) return *e;
+  if (auto e = range_error(request, limits)) return *e;
+  if (auto e = tiles_error(request, limits)) return *e;
+  if (auto e = branches_error(request, limits)) return *e;
+  return success();
+}
+
+std::string request_digest(const JobRequest& request) {
+  RecordWriter record;
+  write_request(record, request);
+  return sha256_hex(record.str());
+}
+
+}  // namespace raykiln::server
