@@ -1,14 +1,14 @@
 // One ray through the tree, near cells first: the reference that every faster walk must equal.
 //
-// Why it finds what brute force finds. Let R be the largest distance along an axis from the origin
-// to a corner of the root's box and u = 2^-24. The triangle test rounds the sheared corners, which
-// moves them by at most 6 u R; so when it reports a hit, a point of the exact triangle lies within
-// 6 u R of the exact ray, at the reported t within 2.5 u R / |d_z| (d_z the longest component).
-// That point lies in a leaf that lists the triangle. Cells are therefore taken to be larger by
-// kSlack = 16 u R on all sides: 6 for the point, 3 for rounding of the plane's t, 2.5 for the
-// rounding of the hit's t, the rest for clipping in double. Then a cell's interval holds the
-// reported t of every hit that only this cell can give, and cells may be cut off by t_min, t_max
-// and a best hit *strictly* before the entry; equal t goes on, so the lowest id wins.
+// Why it finds what brute force finds. Let M be the largest coordinate of the root's box and the
+// origin, u = 2^-24, w = 2^-53. The triangle test rounds sheared corners in double, which moves them
+// by at most 12 w M; so when it reports a hit, a point of the exact triangle lies within 12 w M of
+// the exact ray. That point lies, up to the rounding of clipping (some w M), in a leaf that lists
+// the triangle. Cells are therefore taken to be larger by kAbsoluteSlack = 1024 w M on all sides, and
+// by kRelativeSlack = 8 u of a face's distance: 3 for the rounding of the t of the face, 1 for that
+// of the hit's t, the rest in reserve. Then the interval of some such leaf holds the reported t, and
+// cells may be cut off by t_min, t_max and a best hit *strictly* before the entry; equal t goes on,
+// so the lowest id wins.
 #pragma once
 
 #include <algorithm>
@@ -21,22 +21,24 @@
 
 namespace raykiln::render {
 
-inline constexpr float kSlack = 16.0F * 0x1p-24F;
+inline constexpr float kAbsoluteSlack = 0x1p-43F;
+inline constexpr float kRelativeSlack = 8.0F * 0x1p-24F;
 
 class ScalarWalk {
  public:
   /// The ray has passed `prepare`.
   ScalarWalk(const KdTree& tree, const Ray& ray, TraversalCounters& counters)
       : tree_(tree), counters_(counters) {
-    float reach = 0.0F;
+    float largest = 0.0F;
     for (int k = 0; k < 3; ++k) {
       const auto a = static_cast<std::size_t>(k);
       o_[a] = ray.o[k];
       inv_d_[a] = 1.0F / ray.d[k];
       backward_[a] = std::signbit(ray.d[k]);
-      reach = std::max({reach, std::abs(tree.box.lo[k] - o_[a]), std::abs(tree.box.hi[k] - o_[a])});
+      largest = std::max({largest, std::abs(o_[a]), std::abs(tree.box.lo[k]),
+                          std::abs(tree.box.hi[k])});
     }
-    slack_ = kSlack * reach;
+    slack_ = kAbsoluteSlack * largest;
     t0_ = ray.t_min;
     t1_ = ray.t_max;
     clip_to_root();
@@ -70,13 +72,23 @@ class ScalarWalk {
     float t0, t1;
   };
 
+  // The t at which the ray meets a plane moved down or up by the slack.
+  [[nodiscard]] float below(float plane, std::size_t axis) const {
+    const float distance = plane - o_[axis];
+    return (distance - (slack_ + kRelativeSlack * std::abs(distance))) * inv_d_[axis];
+  }
+  [[nodiscard]] float above(float plane, std::size_t axis) const {
+    const float distance = plane - o_[axis];
+    return (distance + (slack_ + kRelativeSlack * std::abs(distance))) * inv_d_[axis];
+  }
+
   // Comparisons are such that NaN (0 times infinity: the origin in a face of the enlarged cell and
   // no motion along the axis) keeps the interval as it is.
   void clip_to_root() {
     for (int k = 0; k < 3; ++k) {
       const auto a = static_cast<std::size_t>(k);
-      const float lo = ((tree_.box.lo[k] - o_[a]) - slack_) * inv_d_[a];
-      const float hi = ((tree_.box.hi[k] - o_[a]) + slack_) * inv_d_[a];
+      const float lo = below(tree_.box.lo[k], a);
+      const float hi = above(tree_.box.hi[k], a);
       const float enter = backward_[a] ? hi : lo;
       const float exit = backward_[a] ? lo : hi;
       if (enter > t0_) t0_ = enter;
@@ -90,11 +102,10 @@ class ScalarWalk {
   Entry descend(KdNode node, const Entry& cell, Stack& stack, std::size_t& size) const {
     const std::size_t a = split_axis(node);
     const std::uint32_t left = left_child(node);
-    const float distance = split_position(node) - o_[a];
-    const float below = (distance - slack_) * inv_d_[a];
-    const float above = (distance + slack_) * inv_d_[a];
-    const float leave_near = backward_[a] ? below : above;
-    const float enter_far = backward_[a] ? above : below;
+    const float low = below(split_position(node), a);
+    const float high = above(split_position(node), a);
+    const float leave_near = backward_[a] ? low : high;
+    const float enter_far = backward_[a] ? high : low;
     const std::uint32_t near = left + (backward_[a] ? 1U : 0U);
     const std::uint32_t far = left + (backward_[a] ? 0U : 1U);
     const Entry far_cell{far, enter_far > cell.t0 ? enter_far : cell.t0, cell.t1};

@@ -2,15 +2,15 @@
 // Ray/Triangle Intersection", JCGT 2(1)), the same for every walk, tree and leaf.
 //
 // A ray is sheared so that it runs along the z axis from the origin; a triangle is hit when the
-// origin lies in its shadow on z = 0, the border included. Sheared corners are computed in float,
-// each from the ray and the corner alone, so triangles that share a corner see the same numbers.
-// Edge functions of floats are exact in double up to their last subtraction, which keeps the sign;
-// hence two triangles never both miss at a common edge.
+// origin lies in its shadow on z = 0, the border included. A sheared corner depends on the ray and
+// that corner alone and the sign of an edge function is exact, so triangles that share an edge or
+// a corner never both miss there.
 //
-// Two steps: `passes_filter` is float arithmetic over a whole block. Rounding is monotone, so a
-// float edge function never has the wrong sign, only zero (or NaN after overflow) in doubt; what is
-// in doubt passes. `test_lane` then decides in double, so the answer is the same however the filter
-// was compiled.
+// `test_lane` decides, in double. In float the corners would move by up to 6 u |corner - origin|
+// (u = 2^-24): a triangle of a kilometre would be uncertain by half a millimetre everywhere, and a
+// walk that must agree with brute force would have to enlarge every cell by that much.
+// `passes_filter` is float arithmetic over a whole block and rejects only what test_lane rejects for
+// certain; so results do not depend on how it was compiled.
 #pragma once
 
 #include <array>
@@ -31,8 +31,7 @@ inline constexpr float kMaxDirection = 0x1p100F;
 struct ShearedRay {
   std::array<float, 3> o{};
   std::array<std::size_t, 3> k{0, 1, 2};  ///< axes x, y, z of the sheared space
-  float sx = 0.0F, sy = 0.0F;
-  double inv_dz = 0.0;
+  double sx = 0.0, sy = 0.0, inv_dz = 0.0;
   float t_min = 0.0F, t_max = 0.0F;
 };
 
@@ -48,58 +47,89 @@ struct ShearedRay {
   const bool finite = ax <= kMaxDirection && ay <= kMaxDirection && az <= kMaxDirection &&
                       std::isfinite(ray.o.x) && std::isfinite(ray.o.y) && std::isfinite(ray.o.z);
   if (!finite || !(longest >= kMinDirection) || !(ray.t_min <= ray.t_max)) return false;
+  const auto dz = static_cast<double>(d[kz]);
   out.o = {ray.o.x, ray.o.y, ray.o.z};
   out.k = {(kz + 1) % 3, (kz + 2) % 3, kz};
-  out.sx = d[out.k[0]] / d[kz];
-  out.sy = d[out.k[1]] / d[kz];
-  out.inv_dz = 1.0 / static_cast<double>(d[kz]);
+  out.sx = static_cast<double>(d[out.k[0]]) / dz;
+  out.sy = static_cast<double>(d[out.k[1]]) / dz;
+  out.inv_dz = 1.0 / dz;
   out.t_min = ray.t_min;
   out.t_max = ray.t_max;
   return true;
 }
 
 /// Sheared corners of one triangle: x, y in the plane across the ray, z along its main axis.
+template <typename Real>
 struct ShearedTriangle {
-  std::array<float, 3> x, y, z;
+  std::array<Real, 3> x, y, z;
 };
 
-template <int W>
-[[nodiscard]] inline ShearedTriangle shear(const ShearedRay& ray, const LeafBlock<W>& block,
-                                           std::size_t lane) {
-  ShearedTriangle s;
+template <typename Real, int W>
+[[nodiscard]] inline ShearedTriangle<Real> shear(const ShearedRay& ray, const LeafBlock<W>& block,
+                                                 std::size_t lane) {
+  const std::array<Real, 3> o{static_cast<Real>(ray.o[ray.k[0]]), static_cast<Real>(ray.o[ray.k[1]]),
+                              static_cast<Real>(ray.o[ray.k[2]])};
+  const auto sx = static_cast<Real>(ray.sx);
+  const auto sy = static_cast<Real>(ray.sy);
+  ShearedTriangle<Real> s;
   for (std::size_t c = 0; c < 3; ++c) {
-    s.z[c] = block.v[c][ray.k[2]][lane] - ray.o[ray.k[2]];
-    s.x[c] = (block.v[c][ray.k[0]][lane] - ray.o[ray.k[0]]) - ray.sx * s.z[c];
-    s.y[c] = (block.v[c][ray.k[1]][lane] - ray.o[ray.k[1]]) - ray.sy * s.z[c];
+    s.z[c] = static_cast<Real>(block.v[c][ray.k[2]][lane]) - o[2];
+    s.x[c] = (static_cast<Real>(block.v[c][ray.k[0]][lane]) - o[0]) - sx * s.z[c];
+    s.y[c] = (static_cast<Real>(block.v[c][ray.k[1]][lane]) - o[1]) - sy * s.z[c];
   }
   return s;
 }
 
+inline float largest_magnitude(const std::array<float, 3>& a) {
+  const float b = std::abs(a[0]) > std::abs(a[1]) ? std::abs(a[0]) : std::abs(a[1]);
+  return b > std::abs(a[2]) ? b : std::abs(a[2]);
+}
+
 /// pass[lane] = 0 where the triangle is missed for certain. Vectorises over the lanes.
+///
+/// With h the largest |x|, |y| and m = h + max |z| >= max |corner - origin|, a sheared coordinate is
+/// off by at most 6 u m: one rounding each of the two differences, the slope and the product, and
+/// one of a result up to 2 m. An edge function is then off by at most 24 u m h + 72 u^2 m^2 + 8 u m h
+/// (the corners' errors, their products, its own three roundings), which is below 40 u m (h + 4 u m).
 template <int W>
 inline void passes_filter(const ShearedRay& ray, const LeafBlock<W>& block,
                           std::array<std::int32_t, W>& pass) {
+  constexpr float kUnit = 0x1p-24F;
+  constexpr float kUnderflow = 0x1p-120F;  // products below 2^-126 lose more than u
   for (std::size_t lane = 0; lane < W; ++lane) {
-    const ShearedTriangle s = shear(ray, block, lane);
+    const auto s = shear<float>(ray, block, lane);
     const float u = s.x[2] * s.y[1] - s.y[2] * s.x[1];
     const float v = s.x[0] * s.y[2] - s.y[0] * s.x[2];
     const float w = s.x[1] * s.y[0] - s.y[1] * s.x[0];
-    const int negative = static_cast<int>(u < 0.0F) | static_cast<int>(v < 0.0F) |
-                         static_cast<int>(w < 0.0F);
-    const int positive = static_cast<int>(u > 0.0F) | static_cast<int>(v > 0.0F) |
-                         static_cast<int>(w > 0.0F);
-    pass[lane] = 1 - (negative & positive);
+    const float hx = largest_magnitude(s.x);
+    const float hy = largest_magnitude(s.y);
+    const float h = hx > hy ? hx : hy;
+    const float m = h + largest_magnitude(s.z);
+    const float e = 40.0F * kUnit * m * (h + 4.0F * kUnit * m) + kUnderflow;
+    const int negative = static_cast<int>(u < -e) | static_cast<int>(v < -e) |
+                         static_cast<int>(w < -e);
+    const int positive = static_cast<int>(u > e) | static_cast<int>(v > e) |
+                         static_cast<int>(w > e);
+    pass[lane] = 1 - (negative & positive);  // NaN after overflow passes
   }
+}
+
+/// a b - c d with an exact sign: products are rounded monotonously, so only 0 is in doubt, and then
+/// the parts that rounding cut off decide.
+[[nodiscard]] inline double difference_of_products(double a, double b, double c, double d) {
+  const double ab = a * b;
+  const double cd = c * d;
+  if (ab != cd) return ab - cd;
+  return std::fma(a, b, -ab) - std::fma(c, d, -cd);
 }
 
 /// The hit of one triangle within [t_min, t_max] of the ray. False on a miss.
 template <int W>
 [[nodiscard]] inline bool test_lane(const ShearedRay& ray, const LeafBlock<W>& block,
                                     std::size_t lane, Hit& hit) {
-  const ShearedTriangle s = shear(ray, block, lane);
-  const auto cross = [&](std::size_t a, std::size_t b) {  // exact products, one rounding
-    return static_cast<double>(s.x[a]) * static_cast<double>(s.y[b]) -
-           static_cast<double>(s.y[a]) * static_cast<double>(s.x[b]);
+  const auto s = shear<double>(ray, block, lane);
+  const auto cross = [&](std::size_t a, std::size_t b) {
+    return difference_of_products(s.x[a], s.y[b], s.y[a], s.x[b]);
   };
   const double u = cross(2, 1);
   const double v = cross(0, 2);
@@ -107,8 +137,7 @@ template <int W>
   if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
   const double det = u + v + w;
   if (!(det > 0.0 || det < 0.0)) return false;  // seen edge-on, or NaN
-  const double depth = (u * static_cast<double>(s.z[0]) + v * static_cast<double>(s.z[1]) +
-                        w * static_cast<double>(s.z[2])) * ray.inv_dz;
+  const double depth = (u * s.z[0] + v * s.z[1] + w * s.z[2]) * ray.inv_dz;
   const auto t = static_cast<float>(depth / det);
   if (!(t >= ray.t_min && t <= ray.t_max && t <= std::numeric_limits<float>::max() &&
         t >= std::numeric_limits<float>::lowest())) {
