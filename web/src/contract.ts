@@ -1,0 +1,120 @@
+// The wire types of proto/openapi.yaml that the page uses. Hand-written: the
+// page reads a part of each answer and must survive fields it does not know.
+
+export type JobState =
+  | "queued" | "preparing" | "rendering" | "cancelling"
+  | "completed" | "failed" | "cancelled";
+
+export type Vec3 = [number, number, number];
+
+export interface OwnCamera {
+  eye: Vec3;
+  look_at: Vec3;
+  up?: Vec3;
+  fov_deg?: number;
+}
+
+export interface JobRequest {
+  scene: string;
+  name?: string;
+  camera?: number | string | OwnCamera;
+  width: number;
+  height: number;
+  stop: { samples: number };
+  light_model?: string;
+  max_depth?: number;
+  branches?: number;
+  seed?: number;
+  pixel_mode?: string;
+  direction_sampling?: string;
+  emitter_sampling?: boolean;
+  tile?: number;
+  priority?: number;
+}
+
+/** RFC 9457 document, as in an answer or in a failed job. */
+export interface ProblemView {
+  title: string;
+  status: number;
+  detail: string;
+  code: string;
+  where?: string;
+}
+
+export interface Warning {
+  code: string;
+  message: string;
+  /** File and line or JSON pointer; empty when it has no place. */
+  where: string;
+}
+
+export interface Job {
+  id: string;
+  scene: string;
+  name: string;
+  state: JobState;
+  revision: number;
+  created_at: string;
+  started_at: string | null;
+  finished_at: string | null;
+  request: JobRequest;
+  queue_position: number | null;
+  prepare: { stage: string; fraction: number } | null;
+  progress: {
+    fraction: number;
+    samples_done: number;
+    samples_target: number;
+    tiles_done: number;
+    tiles_total: number;
+  };
+  elapsed_seconds: number;
+  remaining_seconds: number | null;
+  statistics: Record<string, unknown>;
+  warnings: Warning[];
+  error: ProblemView | null;
+  image: { revision: number; png: string; exr: string } | null;
+}
+
+export interface Scene {
+  id: string;
+  name: string;
+  kind: string;
+  bytes: number;
+  created_at: string;
+  triangles: number;
+  materials: number;
+  lights: { point: number; emitting_triangles: number };
+  cameras: { index: number; name: string }[];
+  warnings: Warning[];
+  tree: Record<string, number> | null;
+  cache: "absent" | "building" | "ready";
+}
+
+export interface JobPage {
+  jobs: Job[];
+  next_cursor: string | null;
+}
+
+const kFinal: readonly JobState[] = ["completed", "failed", "cancelled"];
+
+export const is_final = (state: JobState): boolean => kFinal.includes(state);
+
+const is_object = (value: unknown): value is Record<string, unknown> =>
+  typeof value === "object" && value !== null;
+
+export function is_job(value: unknown): value is Job {
+  return is_object(value) && typeof value["id"] === "string" &&
+    typeof value["state"] === "string" && typeof value["revision"] === "number" &&
+    is_object(value["progress"]) && is_object(value["request"]);
+}
+
+export const is_scene = (value: unknown): value is Scene =>
+  is_object(value) && typeof value["id"] === "string";
+
+/** What to call a job: its own name, its scene's, or the start of its id. */
+export function job_title(job: Job, scene: Scene | undefined): string {
+  return job.name || scene?.name || `Job ${job.id.slice(0, 10)}`;
+}
+
+export const scene_title = (scene: Scene): string =>
+  scene.name || `Scene ${scene.id.slice(0, 8)}`;

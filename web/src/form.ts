@@ -1,0 +1,172 @@
+// The job form: its fields, their defaults, and the way between the typed text
+// and a job request. Errors are placed at fields by their JSON pointer.
+
+import type { Job, JobRequest, OwnCamera, Vec3 } from "./contract";
+import type { FieldProblem } from "./problem";
+
+export type FormKey =
+  | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
+  | "width" | "height" | "samples" | "max_depth"
+  | "name" | "seed" | "priority" | "tile" | "branches"
+  | "pixel_mode" | "direction_sampling" | "emitter_sampling";
+
+export type FormValues = Record<FormKey, string>;
+export type FormErrors = Partial<Record<FormKey, string>>;
+
+/** Value of the camera field that shows the fields of an own camera. */
+export const kOwnCamera = "own";
+
+export const kDefaultForm: FormValues = {
+  scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40",
+  width: "640", height: "480", samples: "64", max_depth: "8",
+  name: "", seed: "0", priority: "10", tile: "64", branches: "1",
+  pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true",
+};
+
+type Kind = "scene" | "camera" | "integer" | "number" | "vector" | "text" | "choice";
+
+export interface FieldSpec {
+  key: FormKey;
+  pointer: string;
+  label: string;
+  hint: string;
+  kind: Kind;
+  /** Where the field stands: always, with an own camera, or under the details. */
+  group: "main" | "camera" | "more";
+  min?: number;
+  max?: number;
+  choices?: readonly (readonly [value: string, label: string])[];
+}
+
+export const kFields: readonly FieldSpec[] = [
+  { key: "scene", pointer: "/scene", label: "Scene", hint: "", kind: "scene", group: "main" },
+  { key: "camera", pointer: "/camera", label: "Camera", hint: "", kind: "camera", group: "main" },
+  { key: "eye", pointer: "/camera/eye", label: "Eye", hint: "x y z, metres", kind: "vector", group: "camera" },
+  { key: "look_at", pointer: "/camera/look_at", label: "Look at", hint: "x y z, metres", kind: "vector", group: "camera" },
+  { key: "up", pointer: "/camera/up", label: "Up", hint: "x y z", kind: "vector", group: "camera" },
+  { key: "fov_deg", pointer: "/camera/fov_deg", label: "Field of view", hint: "vertical, degrees", kind: "number", group: "camera" },
+  { key: "width", pointer: "/width", label: "Width", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
+  { key: "height", pointer: "/height", label: "Height", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
+  { key: "samples", pointer: "/stop/samples", label: "Samples", hint: "per pixel", kind: "integer", group: "main", min: 1, max: 1048576 },
+  { key: "max_depth", pointer: "/max_depth", label: "Max depth", hint: "reflections", kind: "integer", group: "main", min: 0, max: 64 },
+  { key: "name", pointer: "/name", label: "Name", hint: "for the list; optional", kind: "text", group: "more" },
+  { key: "seed", pointer: "/seed", label: "Seed", hint: "same seed, same bytes", kind: "integer", group: "more", min: 0 },
+  { key: "priority", pointer: "/priority", label: "Priority", hint: "1 to 100, share of the workers", kind: "integer", group: "more", min: 1, max: 100 },
+  { key: "tile", pointer: "/tile", label: "Tile edge", hint: "pixels", kind: "integer", group: "more", min: 1, max: 4096 },
+  { key: "branches", pointer: "/branches", label: "Branches", hint: "rays from every hit", kind: "integer", group: "more", min: 1, max: 16 },
+  { key: "pixel_mode", pointer: "/pixel_mode", label: "Sample position", hint: "", kind: "choice", group: "more",
+    choices: [["random", "Random in the pixel"], ["centre", "Pixel centre"]] },
+  { key: "direction_sampling", pointer: "/direction_sampling", label: "Directions", hint: "", kind: "choice", group: "more",
+    choices: [["bsdf", "By the material"], ["uniform_sphere", "Uniform (reference)"]] },
+  { key: "emitter_sampling", pointer: "/emitter_sampling", label: "Emitter sampling", hint: "", kind: "choice", group: "more",
+    choices: [["true", "On"], ["false", "Off"]] },
+];
+
+function parse_vector(text: string): Vec3 | null {
+  const parts = text.trim().split(/[\s,;]+/).map(Number);
+  const [x, y, z] = parts;
+  if (parts.length !== 3 || x === undefined || y === undefined || z === undefined) return null;
+  return parts.every(Number.isFinite) ? [x, y, z] : null;
+}
+
+/** The reason why `text` cannot be sent as this field's value; empty when it can. */
+function fault(spec: FieldSpec, text: string): string {
+  if (spec.kind === "vector") {
+    return parse_vector(text) ? "" : "Enter three numbers, for example 0 1 4.";
+  }
+  if (spec.kind === "number") {
+    return text.trim() !== "" && Number.isFinite(Number(text)) ? "" : "Enter a number.";
+  }
+  if (spec.kind !== "integer") return "";
+  if (!/^-?\d+$/.test(text.trim()) || !Number.isSafeInteger(Number(text))) {
+    return "Enter a whole number.";
+  }
+  if (spec.min !== undefined && Number(text) < spec.min) return `Enter ${spec.min} or more.`;
+  if (spec.max !== undefined && Number(text) > spec.max) return `Enter ${spec.max} or less.`;
+  return "";
+}
+
+/** Checks what the page can know; the server checks everything again. */
+export function check_form(values: FormValues): FormErrors {
+  const errors: FormErrors = {};
+  if (!values.scene) errors.scene = "Choose a scene, or upload one first.";
+  for (const spec of kFields) {
+    if (spec.group === "camera" && values.camera !== kOwnCamera) continue;
+    const reason = fault(spec, values[spec.key]);
+    if (reason) errors[spec.key] = reason;
+  }
+  return errors;
+}
+
+/** The request that checked `values` ask for. */
+export function to_request(values: FormValues): JobRequest {
+  const number = (key: FormKey): number => Number(values[key].trim());
+  return {
+    scene: values.scene,
+    name: values.name.trim(),
+    camera: values.camera === kOwnCamera ? own_camera(values) : number("camera"),
+    width: number("width"),
+    height: number("height"),
+    stop: { samples: number("samples") },
+    light_model: "seed",
+    max_depth: number("max_depth"),
+    branches: number("branches"),
+    seed: number("seed"),
+    pixel_mode: values.pixel_mode,
+    direction_sampling: values.direction_sampling,
+    emitter_sampling: values.emitter_sampling === "true",
+    tile: number("tile"),
+    priority: number("priority"),
+  };
+}
+
+function own_camera(values: FormValues): OwnCamera {
+  const vector = (key: FormKey): Vec3 => parse_vector(values[key]) ?? [0, 0, 0];
+  return {
+    eye: vector("eye"), look_at: vector("look_at"), up: vector("up"),
+    fov_deg: Number(values.fov_deg),
+  };
+}
+
+/** The form that would ask for `job` again; `cameras` are those of its scene. */
+export function from_job(job: Job, cameras: readonly { index: number; name: string }[]): FormValues {
+  const request = job.request;
+  const values = { ...kDefaultForm, scene: request.scene, name: request.name ?? job.name };
+  const plain: FormKey[] = [
+    "width", "height", "max_depth", "branches", "seed", "tile", "priority",
+    "pixel_mode", "direction_sampling", "emitter_sampling",
+  ];
+  const bag = request as unknown as Record<string, unknown>;
+  for (const key of plain) if (bag[key] !== undefined) values[key] = String(bag[key]);
+  values.samples = String(request.stop.samples);
+  const camera = request.camera;
+  if (typeof camera === "number") values.camera = String(camera);
+  if (typeof camera === "string") {
+    values.camera = String(cameras.find((one) => one.name === camera)?.index ?? 0);
+  }
+  if (typeof camera === "object") Object.assign(values, from_own_camera(camera));
+  return values;
+}
+
+function from_own_camera(camera: OwnCamera): Partial<FormValues> {
+  return {
+    camera: kOwnCamera,
+    eye: camera.eye.join(" "),
+    look_at: camera.look_at.join(" "),
+    up: (camera.up ?? [0, 1, 0]).join(" "),
+    fov_deg: String(camera.fov_deg ?? 40),
+  };
+}
+
+/** Puts each problem at the field whose pointer it names or lies nearest. */
+export function place_errors(problems: readonly FieldProblem[]): FormErrors {
+  const errors: FormErrors = {};
+  for (const problem of problems) {
+    const below = kFields.filter((field) =>
+      problem.pointer === field.pointer || problem.pointer.startsWith(`${field.pointer}/`));
+    const spec = below.sort((a, b) => b.pointer.length - a.pointer.length)[0];
+    const key = spec?.key ?? (problem.pointer.startsWith("/stop") ? "samples" : undefined);
+    if (key && !errors[key]) errors[key] = problem.message;
+  }
+  return errors;
+}

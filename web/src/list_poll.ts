@@ -1,0 +1,53 @@
+// Keeps the list of jobs fresh while it is on screen: often while something
+// runs, seldom otherwise, not at all in a hidden tab.
+
+import { list_jobs } from "./api";
+import { backoff_ms } from "./backoff";
+import { any_signal, pause } from "./events";
+import type { JobPage } from "./contract";
+import { Problem } from "./problem";
+
+const kBusyMs = 1000;
+const kIdleMs = 4000;
+
+export interface PollHandlers {
+  on_page(page: JobPage): void;
+  on_lost(problem: Problem, retry_at_ms: number): void;
+  is_busy(): boolean;
+}
+
+export function poll_jobs(handlers: PollHandlers): { stop(): void; now(): void } {
+  const stopped = new AbortController();
+  let waiting = new AbortController();
+  const now = (): void => waiting.abort();
+  const on_visible = (): void => {
+    if (!document.hidden) now();
+  };
+  document.addEventListener("visibilitychange", on_visible, { signal: stopped.signal });
+
+  async function run(): Promise<void> {
+    let attempt = 0;
+    while (!stopped.signal.aborted) {
+      let delay = handlers.is_busy() ? kBusyMs : kIdleMs;
+      try {
+        const page = await list_jobs(null, stopped.signal);
+        if (stopped.signal.aborted) return;
+        handlers.on_page(page);
+        attempt = 0;
+        delay = handlers.is_busy() ? kBusyMs : kIdleMs;
+      } catch (error) {
+        if (stopped.signal.aborted) return;
+        if (!(error instanceof Problem)) throw error;
+        delay = Math.max(backoff_ms(attempt, Math.random()), (error.retry_after ?? 0) * 1000);
+        attempt += 1;
+        handlers.on_lost(error, Date.now() + delay);
+      }
+      if (document.hidden) delay = 3_600_000; // until the tab is visible again
+      waiting = new AbortController();
+      await pause(delay, any_signal(stopped.signal, waiting.signal));
+    }
+  }
+
+  void run();
+  return { stop: () => stopped.abort(), now };
+}

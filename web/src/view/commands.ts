@@ -1,0 +1,19 @@
+// What a person can ask for. The views call these; main carries them out.
+
+import type { FormKey } from "../form";
+import type { SceneFile } from "../upload_list";
+
+export interface Commands {
+  navigate(path: string): void;
+  upload(files: Promise<SceneFile[]>): void;
+  stop_upload(id: number): void;
+  dismiss_upload(id: number): void;
+  set_field(key: FormKey, value: string): void;
+  submit(): void;
+  show_older(): void;
+  cancel(id: string): void;
+  render_again(id: string): void;
+  set_exposure(stops: number): void;
+  set_zoom(zoom: "fit" | "actual"): void;
+  retry_now(): void;
+}

@@ -1,0 +1,129 @@
+// What every page shares: the bar, the banner of a lost line, the drop target
+// that is the whole page, the help, and the voice for screen readers.
+
+import { files_of_drop } from "../dropped";
+import type { State } from "../state";
+import type { Commands } from "./commands";
+import { h, set_attribute, set_hidden, set_text } from "./dom";
+import { Help } from "./help";
+import { JobForm } from "./job_form";
+import { JobList } from "./job_list";
+import { JobPage } from "./job_page";
+import { UploadPanel } from "./upload_panel";
+
+export class Shell {
+  readonly uploads: UploadPanel;
+  readonly form: JobForm;
+  readonly job: JobPage;
+  readonly help = new Help();
+  private list_: JobList;
+  private home_: HTMLElement;
+  private home_title_ = h("h1", { class: "unseen", tabindex: -1 }, "raykiln: renders and jobs");
+  private banner_text_ = h("span");
+  private banner_: HTMLElement;
+  private line_ = h("span", { class: "line" });
+  private voice_ = h("div", { class: "unseen", role: "status", "aria-live": "polite" });
+  private veil_ = h("div", { class: "veil", hidden: true, "aria-hidden": "true" },
+    h("p", {}, "Drop to upload the scene"));
+
+  constructor(root: HTMLElement, commands: Commands) {
+    this.uploads = new UploadPanel(commands);
+    this.form = new JobForm(commands);
+    this.list_ = new JobList(commands);
+    this.job = new JobPage(commands);
+    this.home_ = h("main", { class: "page-home", id: "home" }, this.home_title_,
+      h("div", { class: "column" }, this.uploads.element,
+        h("section", { "aria-labelledby": "form-heading" },
+          h("h2", { id: "form-heading" }, "New render"), this.form.element)),
+      this.list_.element);
+    this.banner_ = h("div", { class: "banner", role: "alert", hidden: true }, this.banner_text_,
+      h("button", { type: "button", onclick: () => commands.retry_now() }, "Try now"));
+    const question = h("button",
+      { type: "button", class: "quiet", "aria-label": "Keyboard shortcuts", title: "Keyboard shortcuts (?)",
+        onclick: () => this.help.open() }, "?");
+    root.replaceChildren(
+      h("a", { class: "skip", href: "#home" }, "Skip to the content"),
+      h("header", { class: "bar" },
+        h("a", { class: "brand", href: "/" }, h("span", { class: "ember", "aria-hidden": "true" }), "raykiln"),
+        h("nav", { "aria-label": "Main" }, h("a", { href: "/" }, "Jobs")), this.line_, question),
+      this.banner_, this.home_, this.job.element, this.voice_, this.veil_, this.help.element);
+    this.listen(root, commands);
+  }
+
+  private listen(root: HTMLElement, commands: Commands): void {
+    let depth = 0; // dragenter and dragleave come for every element on the way
+    const carries_files = (event: DragEvent): boolean =>
+      event.dataTransfer?.types.includes("Files") ?? false;
+    window.addEventListener("dragenter", (event) => {
+      if (!carries_files(event)) return;
+      depth += 1;
+      set_hidden(this.veil_, false);
+    });
+    window.addEventListener("dragleave", (event) => {
+      if (!carries_files(event)) return;
+      depth = Math.max(0, depth - 1);
+      set_hidden(this.veil_, depth > 0 ? this.veil_.hidden : true);
+    });
+    window.addEventListener("dragover", (event) => {
+      if (carries_files(event)) event.preventDefault();
+    });
+    window.addEventListener("drop", (event) => {
+      if (!event.dataTransfer || !carries_files(event)) return;
+      event.preventDefault();
+      depth = 0;
+      set_hidden(this.veil_, true);
+      commands.upload(files_of_drop(event.dataTransfer));
+    });
+    root.addEventListener("click", (event) => {
+      const link = (event.target as Element).closest("a");
+      const plain = event.button === 0 && !event.metaKey && !event.ctrlKey && !event.shiftKey;
+      if (!link || !plain || link.hasAttribute("download") || link.origin !== location.origin) return;
+      event.preventDefault();
+      if (link.classList.contains("skip")) this.focus_page();
+      else commands.navigate(link.pathname);
+    });
+  }
+
+  /** Moves the focus to the page's heading, after a change of place. */
+  focus_page(): void {
+    if (this.home_.hidden) this.job.focus();
+    else this.home_title_.focus();
+  }
+
+  say(text: string): void {
+    set_text(this.voice_, text);
+  }
+
+  update(state: State): void {
+    const on_job = state.route.page === "job";
+    set_hidden(this.home_, on_job);
+    set_hidden(this.job.element, !on_job);
+    const lost = state.line.state === "lost";
+    set_hidden(this.banner_, !lost);
+    if (lost) {
+      const wait = Math.max(0, Math.ceil((state.line.retry_at_ms - state.now_ms) / 1000));
+      // The seconds stand in an attribute that CSS shows: a screen reader hears the alert once.
+      set_text(this.banner_text_, `${state.line.reason} What you see is the last that was known.`);
+      set_attribute(this.banner_text_, "data-wait", wait > 0 ? ` Next try in ${wait} s.` : " Trying…");
+    }
+    set_attribute(this.line_, "data-line", state.line.state);
+    set_text(this.line_, { connecting: "connecting", live: "live", lost: "offline", ended: "" }[state.line.state]);
+    if (state.route.page === "job") {
+      this.job.update(state, state.route.id);
+    } else {
+      this.uploads.update(state.uploads);
+      this.form.update(state);
+      this.list_.update(state);
+    }
+    document.title = title(state);
+  }
+}
+
+function title(state: State): string {
+  if (state.route.page !== "job") return "raykiln";
+  const job = state.jobs[state.route.id];
+  if (!job) return "raykiln";
+  const name = job.name || state.scenes[job.scene]?.name || job.id.slice(0, 10);
+  const what = job.state === "rendering" ? `${Math.floor(job.progress.fraction * 100)} %` : job.state;
+  return `${what} · ${name} · raykiln`;
+}
