@@ -46,6 +46,8 @@ export interface Warning {
   message: string;
   /** File and line or JSON pointer; empty when it has no place. */
   where: string;
+  /** How often it occurred; one when absent. */
+  count?: number;
 }
 
 export interface Job {
@@ -81,7 +83,10 @@ export interface Scene {
   kind: string;
   bytes: number;
   created_at: string;
+  root_file?: string;
   triangles: number;
+  /** Of zero area. */
+  dropped_triangles?: number;
   materials: number;
   lights: { point: number; emitting_triangles: number };
   cameras: { index: number; name: string }[];

@@ -10,8 +10,8 @@ import { is_final, is_job, type Job } from "./contract";
 import { EventParser } from "./event_parser";
 import { Problem, unreachable } from "./problem";
 
-/** The server sends a heartbeat every 10 s; this much silence means a dead line. */
-const kSilenceMs = 25_000;
+/** The server sends a heartbeat at least every 15 s; this much silence means a dead line. */
+const kSilenceMs = 40_000;
 const kPollMs = 3_000;
 /** Polls before a server that had no stream to spare is asked for one again. */
 const kPollsBeforeStream = 8;

@@ -8,7 +8,7 @@ const known = (value: number | null | undefined): value is number =>
 
 /** Three significant digits without an exponent: 0.0123, 4.56, 78.9, 1230. */
 function significant(value: number): string {
-  const magnitude = Math.abs(value);
+  const magnitude = Math.abs(Number(value.toPrecision(3))); // 0.9999 is shown as 1.00
   const decimals = magnitude >= 100 ? 0 : magnitude >= 10 ? 1 : magnitude >= 1 ? 2 : 3;
   return value.toFixed(decimals);
 }
@@ -87,9 +87,11 @@ export function ago(iso: string | null | undefined, now_ms: number): string {
   return days === 1 ? "yesterday" : `${days} days ago`;
 }
 
-/** "rays_per_second" -> "Rays per second"; units at the end are dropped. */
+/** "merge_seconds" -> "Merge time": the key's last word is its unit, which the value shows. */
 export function label_of(key: string): string {
-  const words = key.replace(/_(seconds|bytes|total)$/, "").replaceAll("_", " ");
+  const words = key
+    .replace(/_seconds$/, "_time").replace(/_bytes$/, "_memory").replace(/_(fraction|total)$/, "")
+    .replace(/^non_/, "non-").replaceAll("_", " ");
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 

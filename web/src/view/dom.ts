@@ -53,12 +53,13 @@ export class Facts {
   readonly element = h("dl", { class: "facts" });
   private rows_ = new Map<string, { row: HTMLElement; value: HTMLElement }>();
 
-  update(facts: readonly (readonly [name: string, value: string])[]): void {
+  /** `wide` names rows that need the whole width where the list has two columns. */
+  update(facts: readonly (readonly [name: string, value: string])[], wide: readonly string[] = []): void {
     const rows = facts.map(([name, value]) => {
       let entry = this.rows_.get(name);
       if (!entry) {
         const cell = h("dd");
-        entry = { row: h("div", {}, h("dt", {}, name), cell), value: cell };
+        entry = { row: h("div", { class: wide.includes(name) ? "wide" : "" }, h("dt", {}, name), cell), value: cell };
         this.rows_.set(name, entry);
       }
       set_text(entry.value, value);

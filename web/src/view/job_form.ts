@@ -100,7 +100,7 @@ export class JobForm {
       field.update(state.form[key], state.form_errors[key] ?? "");
     }
     set_hidden(this.own_camera_, state.form.camera !== kOwnCamera);
-    this.report_.update(scene ? report(scene) : []);
+    this.report_.update(scene ? report(scene) : [], ["Lights"]);
     set_hidden(this.report_.element, !scene);
     this.warnings_.update(scene?.warnings ?? []);
     set_text(this.problem_, state.form_problem);
@@ -135,9 +135,10 @@ export function report(scene: Scene): [string, string][] {
   const rows: [string, string][] = [
     ["Triangles", count(scene.triangles)],
     ["Materials", count(scene.materials)],
-    ["Lights", lights(scene)],
     ["Upload", bytes(scene.bytes)],
   ];
+  if (scene.dropped_triangles) rows.push(["Zero area", `${count(scene.dropped_triangles)} dropped`]);
+  rows.push(["Lights", lights(scene)]);
   return rows;
 }
 

@@ -12,12 +12,13 @@ const kThumbnailMs = 2500;
 
 class JobCard {
   private picture_ = h("img", { alt: "", loading: "lazy", decoding: "async", hidden: true });
+  private instead_ = h("span", { class: "thumb-text" });
   private title_ = h("span", { class: "card-title" });
   private chip_ = h("span", { class: "chip" });
   private meta_ = h("span", { class: "card-meta" });
   private bar_ = h("progress", { max: 1, value: 0, "aria-hidden": "true" });
   private link_ = h("a", { class: "card" },
-    h("span", { class: "thumb" }, this.picture_),
+    h("span", { class: "thumb" }, this.instead_, this.picture_),
     h("span", { class: "card-text" }, this.title_, this.chip_, this.meta_), this.bar_);
   readonly element = h("li", {}, this.link_);
   private fetched_ms_ = 0;
@@ -42,6 +43,7 @@ class JobCard {
     const fraction = job.state === "preparing" ? (job.prepare?.fraction ?? 0) : job.progress.fraction;
     if (this.bar_.value !== fraction) this.bar_.value = fraction;
     set_hidden(this.bar_, is_final(job.state) || job.state === "queued");
+    set_text(this.instead_, job.image ? "" : is_final(job.state) ? "No picture" : "No picture yet");
     this.thumbnail(state, job);
   }
 

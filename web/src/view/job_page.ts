@@ -186,7 +186,7 @@ function meter_text(job: Job): string {
       if (job.queue_position === null) return "In the queue";
       return job.queue_position === 0 ? "Next in the queue" : `${job.queue_position} jobs start before this one`;
     case "preparing":
-      return job.prepare ? `${job.prepare.stage} · ${percent(job.prepare.fraction)}` : "Preparing";
+      return preparing_text(job);
     case "completed":
       return `Done in ${duration(job.elapsed_seconds)}`;
     case "cancelled":
@@ -196,6 +196,16 @@ function meter_text(job: Job): string {
     default:
       return percent(job.progress.fraction);
   }
+}
+
+const kStages: Record<string, string> = {
+  waiting: "Waiting for the scene", importing: "Reading the scene", building: "Building the tree",
+};
+
+function preparing_text(job: Job): string {
+  if (!job.prepare) return "Preparing";
+  const { stage, fraction } = job.prepare;
+  return `${kStages[stage] ?? stage} · ${percent(fraction)}`;
 }
 
 function figures(state: State, job: Job): [string, string][] {

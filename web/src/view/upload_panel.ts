@@ -72,7 +72,7 @@ export class UploadPanel {
       h("h2", { id: "upload-heading" }, "Scene"),
       h("div", { class: "drop-target" },
         h("p", { class: "drop-lead" }, "Drop a scene anywhere on this page"),
-        h("p", { class: "hint" }, "A .zip or .glb, or an .obj or .gltf together with its files"),
+        h("p", { class: "hint" }, "A .zip or .glb, or an .obj or .gltf with its files"),
         h("div", { class: "row" }, choose, folder), this.files_, this.folder_),
       this.list_);
   }

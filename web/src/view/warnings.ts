@@ -11,8 +11,9 @@ export function warning_lines(warnings: readonly Warning[]): string[] {
   for (const warning of warnings) {
     const text = warning.message || warning.code;
     const group = groups.get(text);
-    if (group) group.times += 1;
-    else groups.set(text, { where: warning.where, times: 1 });
+    const times = warning.count ?? 1;
+    if (group) group.times += times;
+    else groups.set(text, { where: warning.where, times });
   }
   const lines = [...groups].map(([text, group]) => {
     const place = group.where ? ` (${group.where}${group.times > 1 ? " and elsewhere" : ""})` : "";
@@ -33,7 +34,7 @@ export class WarningList {
     const key = lines.join("\n");
     if (key === this.shown_) return;
     this.shown_ = key;
-    set_text(this.title_, warnings.length === 1 ? "1 warning" : `${warnings.length} warnings`);
+    set_text(this.title_, lines.length === 1 ? "1 warning" : `${lines.length} warnings`);
     this.list_.replaceChildren(...lines.map((line) => h("li", {}, line)));
     set_hidden(this.element, lines.length === 0);
   }

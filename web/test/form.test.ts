@@ -1,0 +1,48 @@
+import { describe, expect, test } from "vitest";
+import { check_form, from_job, kDefaultForm, kOwnCamera, place_errors, to_request, type FormValues } from "../src/form";
+import { job, kScene } from "./sample";
+
+const filled = (changes: Partial<FormValues> = {}): FormValues => ({ ...kDefaultForm, scene: kScene.id, ...changes });
+
+describe("check_form", () => {
+  test("the defaults need a scene and nothing else", () => {
+    expect(Object.keys(check_form(kDefaultForm))).toEqual(["scene"]);
+    expect(check_form(filled())).toEqual({});
+  });
+
+  test.each([
+    ["width", "0"], ["width", "16385"], ["width", "12.5"], ["width", ""], ["samples", "1e3"], ["max_depth", "65"], ["seed", "-1"],
+    ["seed", "9007199254740993"], ["priority", "0"], ["priority", "101"], ["branches", "x"],
+  ] as const)("%s refuses %j", (key, value) => expect(Object.keys(check_form(filled({ [key]: value })))).toEqual([key]));
+
+  test("an own camera is checked only when it is chosen", () => {
+    expect(check_form(filled({ eye: "1 2" }))).toEqual({});
+    expect(Object.keys(check_form(filled({ camera: kOwnCamera, eye: "1 2", fov_deg: "wide" })))).toEqual(["eye", "fov_deg"]);
+  });
+});
+
+describe("to_request and from_job", () => {
+  test("what was asked for fills the form again", () => {
+    const values = filled({ camera: "1", width: "100", seed: "7", emitter_sampling: "false", name: "x", priority: "3" });
+    expect(from_job(job({ request: to_request(values) }), [])).toEqual(values);
+  });
+
+  test("an own camera survives the round", () => {
+    const values = filled({ camera: kOwnCamera, eye: "1, 2;  3.5", look_at: "0 0 -1", fov_deg: "55" });
+    const request = to_request(values);
+    expect(request.camera).toEqual({ eye: [1, 2, 3.5], look_at: [0, 0, -1], up: [0, 1, 0], fov_deg: 55 });
+    expect(from_job(job({ request }), [])).toEqual({ ...values, eye: "1 2 3.5" });
+  });
+
+  test("a camera by name becomes its index", () => {
+    const request = { ...to_request(filled()), camera: "top" };
+    expect(from_job(job({ request }), kScene.cameras).camera).toBe("1");
+  });
+});
+
+test("errors stand at the nearest field", () => {
+  expect(place_errors([
+    { pointer: "/width", message: "a" }, { pointer: "/stop/sample", message: "b" }, { pointer: "/camera/eye/0", message: "c" },
+    { pointer: "/camera", message: "d" }, { pointer: "/unknown", message: "e" }, { pointer: "/width", message: "second" },
+  ])).toEqual({ width: "a", samples: "b", eye: "c", camera: "d" });
+});
