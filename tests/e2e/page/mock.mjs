@@ -1,6 +1,6 @@
 // A stand-in for the daemon that speaks proto/openapi.yaml as far as the page
 // uses it. Time is driven by its own clock; odd cases are asked for by name:
-// the job's `name` may hold "fail", "slow", "stuck"; faults are set through the object.
+// the job's `name` may hold "fail" or "slow"; other faults are set through the object.
 import { createHash, randomBytes } from "node:crypto";
 import { createReadStream, existsSync } from "node:fs";
 import { createServer } from "node:http";
@@ -130,7 +130,7 @@ export class Mock {
     if (key && this.keys.has(key)) return this.json(answer, 202, this.jobs.get(this.keys.get(key)));
     const errors = [];
     if (body.width * body.height > 3e7) errors.push({ pointer: "/width", code: "out_of_range", detail: "the film would not fit into memory" });
-    if (body.stop.samples > 100000) errors.push({ pointer: "/stop/samples", code: "out_of_range", detail: "must be an integer from 1 to 100000" });
+    if (body.stop.samples > 1048576) errors.push({ pointer: "/stop/samples", code: "out_of_range", detail: "must be an integer from 1 to 1048576" });
     if (errors.length) return this.problem(answer, 422, "invalid_request", `${errors.length} fields are wrong`, { errors });
     const job = this.add_job(body);
     if (key) this.keys.set(key, job.id);
@@ -180,12 +180,12 @@ export class Mock {
         if (job.name.includes("fail")) {
           this.finish(job, "failed", { error: { type: "about:blank#render_failed", title: "Rendering failed", status: 500, code: "render_failed", detail: "out of memory while building the tree" } });
         } else this.change(job, { state: "rendering", prepare: null });
-      } else if (job.state === "rendering" && !job.name.includes("stuck")) this.advance(job);
+      } else if (job.state === "rendering") this.advance(job);
     }
   }
 
   advance(job) {
-    const seconds = job.name.includes("slow") ? 30 : this.seconds;
+    const seconds = job.name.includes("slow") || job.progress.samples_target > 10000 ? 30 : this.seconds;
     const elapsed = (Date.now() - Date.parse(job.started_at)) / 1000;
     const fraction = Math.min(1, (elapsed - 0.2) / seconds);
     const { samples_target, tiles_total } = job.progress;

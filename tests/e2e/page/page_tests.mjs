@@ -1,0 +1,235 @@
+// The page against any server: the real daemon, or the mock.
+import { strict as assert } from "node:assert";
+import {
+  begin_job, fill, label_faults, measure, open_tab, picture, state_is, until, upload,
+} from "./browser.mjs";
+import { bad_files, box_files } from "./scene.mjs";
+
+const kSmall = { width: 160, height: 120, samples: 8 };
+/** Long enough to be cancelled by hand, on any machine. */
+const kEndless = { width: 320, height: 240, samples: 200000 };
+
+const with_tab = (body, path = "/") => async ({ browser, url }) => {
+  const tab = await open_tab(browser, url, path);
+  try {
+    await body(tab.page, url, browser);
+    assert.deepEqual(tab.complaints, []);
+  } finally {
+    await tab.close();
+  }
+};
+
+/** The job that several tests look at once it is done. */
+let done_job = "";
+
+export const kPageTests = [
+  ["an upload by the picker reports what the scene holds", with_tab(async (page) => {
+    await upload(page, box_files("picker"));
+    const report = page.locator("form .facts").first();
+    await report.getByText("Triangles", { exact: true }).waitFor();
+    assert.match(await report.innerText(), /Materials/);
+    assert.match(await page.locator("#field-scene option:checked").innerText(), /box/);
+  })],
+
+  ["an upload by drop anywhere on the page", with_tab(async (page) => {
+    const files = box_files("drop").map(({ name, buffer }) => [name, buffer.toString()]);
+    const transfer = await page.evaluateHandle((list) => {
+      const data = new DataTransfer();
+      for (const [name, text] of list) data.items.add(new File([text], name));
+      return data;
+    }, files);
+    await page.dispatchEvent(".bar", "dragenter", { dataTransfer: transfer });
+    assert.equal(await page.locator(".veil").isVisible(), true);
+    await page.dispatchEvent(".bar", "drop", { dataTransfer: transfer });
+    await page.locator(".upload-status", { hasText: "ready" }).waitFor();
+    assert.equal(await page.locator(".veil").isVisible(), false);
+  })],
+
+  ["a job by the keyboard alone, watched to its end", with_tab(async (page) => {
+    await upload(page, box_files("keyboard"));
+    await page.keyboard.press("n"); // focus on the form
+    const press_until = async (id) => {
+      for (let step = 0; step < 30; step += 1) {
+        if ((await page.evaluate(() => document.activeElement?.id)) === id) return;
+        await page.keyboard.press("Tab");
+      }
+      assert.fail(`Tab does not reach ${id}`);
+    };
+    for (const [key, value] of Object.entries(kSmall)) {
+      await press_until(`field-${key}`);
+      await page.keyboard.press("Control+A");
+      await page.keyboard.type(String(value));
+    }
+    await page.keyboard.press("Enter");
+    await page.waitForURL(/\/jobs\//);
+    done_job = page.url().split("/").pop();
+    assert.equal(await page.evaluate(() => document.activeElement?.tagName), "H1");
+    await state_is(page, "completed");
+    assert.match(await page.locator("#progress-text").innerText(), /^Done in /);
+    assert.match(await page.locator(".panel .facts").first().innerText(), /8 \/ 8/);
+  })],
+
+  ["the picture appears and is not black", with_tab(async (page) => {
+    await page.goto(`${page.url()}jobs/${done_job}`);
+    await picture(page);
+    const seen = await until(() => measure(page), (found) => found.lit > 0.5, "the picture stays dark");
+    assert.deepEqual([seen.width, seen.height], [160, 120]);
+  })],
+
+  ["progress is seen while it renders, and cancel keeps the partial picture", with_tab(async (page) => {
+    await begin_job(page, box_files("cancel"), kEndless);
+    await state_is(page, "rendering");
+    await picture(page);
+    const bar = page.locator(".meter progress");
+    const before = await bar.evaluate((element) => element.value);
+    await until(() => bar.evaluate((element) => element.value), (value) => value > before, "no progress");
+    const facts = page.locator(".panel .facts").first();
+    await until(() => facts.innerText(), (text) => /rays\/s/.test(text), "no speed");
+    const revision = () => page.locator(".stage canvas").evaluate((canvas) => Number(canvas.dataset.revision));
+    const first = await revision();
+    await until(revision, (value) => value > first, "the picture is not renewed");
+    await page.getByRole("button", { name: "Cancel", exact: true }).click();
+    await state_is(page, "cancelled");
+    assert.equal(await page.getByRole("button", { name: "Cancel", exact: true }).isVisible(), false);
+    assert.ok((await until(() => measure(page), (found) => found.lit > 0.1, "no partial picture")).mean > 1);
+    await page.reload();
+    await state_is(page, "cancelled");
+    await picture(page);
+  })],
+
+  ["opened late, after completion: everything is there", with_tab(async (page, url) => {
+    await page.goto(`${url}/jobs/${done_job}`);
+    await state_is(page, "completed");
+    await picture(page);
+    const text = await page.locator(".panel").innerText();
+    for (const part of ["Elapsed", "Samples", "Speed", "Non-finite samples"]) assert.ok(text.includes(part), part);
+    assert.match(await page.title(), /completed/);
+  })],
+
+  ["exposure changes the picture and the PNG link", with_tab(async (page, url) => {
+    await page.goto(`${url}/jobs/${done_job}`);
+    await picture(page);
+    const neutral = await until(() => measure(page), (found) => found.mean > 1, "dark");
+    const slider = page.getByLabel("Exposure");
+    await slider.focus();
+    for (let step = 0; step < 4; step += 1) await page.keyboard.press("]");
+    assert.equal(await slider.inputValue(), "2");
+    await until(() => measure(page), (found) => found.mean > neutral.mean + 5, "not brighter");
+    await slider.fill("-3");
+    await until(() => measure(page), (found) => found.mean < neutral.mean - 5, "not darker");
+    assert.match(await page.getByRole("link", { name: "PNG" }).getAttribute("href"), /exposure=-3/);
+    await page.getByRole("button", { name: "Reset" }).click();
+    await until(() => measure(page), (found) => Math.abs(found.mean - neutral.mean) < 0.01 + neutral.mean * 0.02, "not as before");
+  })],
+
+  ["a reload keeps the job and its picture", with_tab(async (page, url) => {
+    await page.goto(`${url}/jobs/${done_job}`);
+    await picture(page);
+    await page.reload();
+    await state_is(page, "completed");
+    await picture(page);
+    await until(() => measure(page), (found) => found.lit > 0.5, "dark after the reload");
+  })],
+
+  ["zoom to 100 % and back", with_tab(async (page, url) => {
+    await page.goto(`${url}/jobs/${done_job}`);
+    await picture(page);
+    await page.getByRole("button", { name: "100 %" }).click();
+    await until(() => page.locator(".stage canvas").boundingBox(), (box) => Math.round(box.width) === 160, "not 160 pixels wide");
+    await page.keyboard.press("f");
+    await until(() => page.locator(".stage canvas").boundingBox(), (box) => box.width > 400, "does not fill the stage");
+  })],
+
+  ["the downloads are a PNG and an EXR", with_tab(async (page, url) => {
+    await page.goto(`${url}/jobs/${done_job}`);
+    for (const [name, magic] of [["PNG", [0x89, 0x50, 0x4e, 0x47]], ["EXR", [0x76, 0x2f, 0x31, 0x01]]]) {
+      const link = page.getByRole("link", { name });
+      assert.match(await link.getAttribute("download"), new RegExp(`\\.${name.toLowerCase()}$`));
+      const answer = await page.request.get(url + (await link.getAttribute("href")));
+      assert.equal(answer.status(), 200);
+      assert.deepEqual([...(await answer.body()).subarray(0, 4)], magic);
+    }
+  })],
+
+  ["the list shows the job with a thumbnail and leads to it", with_tab(async (page) => {
+    const card = page.locator(`.card[href="/jobs/${done_job}"]`);
+    await card.locator(".chip[data-state=completed]").waitFor();
+    await until(() => card.locator("img").evaluate((image) => image.naturalWidth), (width) => width > 0, "no thumbnail");
+    await card.click();
+    await state_is(page, "completed");
+    await page.goBack();
+    await card.waitFor();
+  })],
+
+  ["render again fills the form with what was asked", with_tab(async (page, url) => {
+    await page.goto(`${url}/jobs/${done_job}`);
+    await state_is(page, "completed");
+    await page.getByRole("button", { name: "Render again" }).click();
+    for (const [key, value] of Object.entries(kSmall)) {
+      assert.equal(await page.locator(`#field-${key}`).inputValue(), String(value));
+    }
+    assert.equal(await page.evaluate(() => document.activeElement?.id), "field-scene");
+  })],
+
+  ["a bad upload says what is wrong and where", with_tab(async (page) => {
+    await page.setInputFiles("#pick-files", bad_files());
+    const reason = page.locator(".upload .problem");
+    await reason.waitFor();
+    assert.match(await reason.innerText(), /box\.mtl:\d+/);
+    await page.getByRole("button", { name: /^Dismiss/ }).click();
+    assert.equal(await reason.count(), 0);
+  })],
+
+  ["a field that the server refuses has its reason beside it", with_tab(async (page) => {
+    await upload(page, box_files("fields"));
+    await fill(page, { width: 16384, height: 16384 });
+    await page.getByRole("button", { name: "Render", exact: true }).click();
+    const reason = page.locator(".field-error:visible, form .problem:visible").first();
+    await reason.waitFor();
+    assert.ok((await reason.innerText()).length > 5);
+    await fill(page, { width: "wide" });
+    await page.getByRole("button", { name: "Render", exact: true }).click();
+    await page.locator("#field-width-error", { hasText: "whole number" }).waitFor();
+    assert.equal(await page.evaluate(() => document.activeElement?.id), "field-width");
+  })],
+
+  ["an unknown job has a page that says so", with_tab(async (page) => {
+    await page.getByRole("heading", { name: "No such job" }).waitFor();
+    await page.getByRole("link", { name: "Back to all jobs" }).click();
+    await page.getByText("New render").waitFor();
+  }, "/jobs/j_does_not_exist")],
+
+  ["every control has a name, on both pages and in the help", with_tab(async (page, url) => {
+    await upload(page, box_files("labels"));
+    await page.getByText("More settings").click();
+    await page.selectOption("#field-camera", "own");
+    assert.deepEqual(await label_faults(page), []);
+    await page.locator("body").press("?");
+    await page.getByRole("dialog").waitFor();
+    await page.keyboard.press("Escape");
+    await page.goto(`${url}/jobs/${done_job}`);
+    await state_is(page, "completed");
+    await picture(page);
+    assert.deepEqual(await label_faults(page), []);
+  })],
+
+  ["a narrow screen needs no sideways scrolling", async ({ browser, url }) => {
+    for (const path of ["/", `/jobs/${done_job}`]) {
+      const tab = await open_tab(browser, url, path, { width: 360, height: 740 });
+      await tab.page.locator(path === "/" ? ".card >> nth=0" : ".stage canvas:not([hidden])").waitFor();
+      const overhang = await tab.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+      assert.ok(overhang <= 0, `${path} is ${overhang} px too wide`);
+      await tab.close();
+    }
+  }],
+
+  ["nothing is loaded from elsewhere", async ({ browser, url }) => {
+    const tab = await open_tab(browser, url);
+    const addresses = [];
+    tab.page.on("request", (request) => addresses.push(request.url()));
+    await tab.page.goto(`${url}/jobs/${done_job}`);
+    await picture(tab.page);
+    assert.deepEqual(addresses.filter((address) => !address.startsWith(url) && !address.startsWith("blob:")), []);
+    await tab.close();
+  }],
+];
