@@ -63,6 +63,7 @@ BsdfValue evaluate_other_side(const Bsdf& b, double cos_i, double x_diffuse, dou
 
 /// `sampled_x` is the exact 1 - cos of a specular sample, or negative: then it is measured.
 BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, double sampled_x) {
+  if (b.black) return {};
   const double side = dot(Vec3d(b.ng), Vec3d(wi));
   const double cosine = std::clamp(dot(Vec3d(b.n), Vec3d(wi)), -1.0, 1.0);
   const Vec3f& axis = side > 0.0 ? b.mirror : b.refracted;

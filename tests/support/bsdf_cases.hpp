@@ -1,0 +1,62 @@
+// Materials and directions that tests of the BSDF go through.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "raykiln/sampling/warp.hpp"
+#include "raykiln/shading/bsdf.hpp"
+
+namespace raykiln::render::support {
+
+struct NamedMaterial {
+  std::string name;
+  Material material;
+};
+
+inline Material make_material(float diffuse, float specular, float transparent, double exponent,
+                              float index = 1.5F) {
+  Material m;
+  m.diffuse = Rgb(diffuse);
+  m.specular = Rgb(specular);
+  m.transparent = transparent;
+  m.specular_exp = exponent;
+  m.index_of_refraction = index;
+  return m;
+}
+
+inline std::vector<NamedMaterial> lobe_materials() {
+  Material coloured = make_material(0.0F, 0.0F, 0.4F, 20.0);
+  coloured.diffuse = {0.5F, 0.0F, 0.1F};
+  coloured.specular = {0.1F, 0.4F, 0.0F};
+  return {{"diffuse opaque", make_material(0.8F, 0.0F, 0.0F, 1.0)},
+          {"diffuse transparent", make_material(0.8F, 0.0F, 1.0F, 1.0)},
+          {"phong 1", make_material(0.0F, 1.0F, 0.0F, 1.0)},
+          {"phong 10", make_material(0.0F, 1.0F, 0.0F, 10.0)},
+          {"phong 1000", make_material(0.0F, 1.0F, 0.0F, 1000.0)},
+          {"glass 50", make_material(0.0F, 1.0F, 1.0F, 50.0)},
+          {"glass 50 reversed", make_material(0.0F, 1.0F, 1.0F, 50.0, 1.0F / 1.5F)},
+          {"index 1", make_material(0.0F, 1.0F, 1.0F, 5.0, 1.0F)},
+          {"all four", make_material(0.3F, 0.4F, 0.5F, 30.0)},
+          {"weights 0.999999 and 1e-6", make_material(0.999999F, 1e-6F, 0.0F, 10.0)},
+          {"coloured", coloured}};
+}
+
+inline const Vec3f kUp{0.0F, 0.0F, 1.0F};
+
+/// Unit direction at so many degrees from +z, towards an oblique azimuth.
+inline Vec3f at_degrees(double degrees) {
+  const double theta = degrees * kPi / 180.0;
+  return Vec3f(Vec3d(0.8 * std::sin(theta), -0.6 * std::sin(theta), std::cos(theta)));
+}
+
+inline Bsdf bsdf_at(const Material& material, const Vec3f& wo, const BsdfModel& model = {}) {
+  return make_bsdf(material, kUp, kUp, wo, model);
+}
+
+inline VertexKey numbered(std::uint64_t i, std::uint64_t seed = 1) {
+  return vertex_key(path_key(seed, i, 0), 0, 0);
+}
+
+}  // namespace raykiln::render::support

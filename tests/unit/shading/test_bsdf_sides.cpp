@@ -1,0 +1,89 @@
+// Which side is which: geometric normals decide sides, shading normals give cosines.
+#include <gtest/gtest.h>
+
+#include "support/bsdf_cases.hpp"
+
+namespace raykiln::render {
+namespace {
+
+using support::at_degrees;
+using support::bsdf_at;
+using support::kUp;
+using support::make_material;
+using support::numbered;
+
+TEST(BsdfSides, ValuesOfTheSeedsFormulas) {
+  // Diffuse: a/pi opaque; a/(2 pi) to both sides where transparent.
+  const Vec3f wo = at_degrees(20.0), above = at_degrees(50.0), below = at_degrees(130.0);
+  const double cosine = std::cos(50.0 * kPi / 180.0);
+  const auto f = [&](const Material& m, const Vec3f& wi) {
+    return evaluate(bsdf_at(m, wo), wi).f_cos.x / cosine;
+  };
+  EXPECT_NEAR(f(make_material(0.8F, 0, 0.0F, 1), above), 0.8 / kPi, 1e-6);
+  EXPECT_EQ(f(make_material(0.8F, 0, 0.0F, 1), below), 0.0);
+  EXPECT_NEAR(f(make_material(0.8F, 0, 1.0F, 1), above), 0.4 / kPi, 1e-6);
+  EXPECT_NEAR(f(make_material(0.8F, 0, 1.0F, 1), below), 0.4 / kPi, 1e-6);
+  EXPECT_NEAR(f(make_material(0.8F, 0, 0.25F, 1), below), 0.25 * 0.4 / kPi, 1e-6);
+  // Phong: (e + 1)/(2 pi) cos^e(alpha) / cos(theta_o); wi in the plane of wo, 70 degrees between.
+  const double alpha = std::cos(70.0 * kPi / 180.0);
+  EXPECT_NEAR(f(make_material(0, 0.5F, 0.0F, 3), above),
+              0.5 * 4.0 / (2.0 * kPi) * alpha * alpha * alpha / std::cos(20.0 * kPi / 180.0), 1e-6);
+}
+
+TEST(BsdfSides, TransparentLobeSplitsByTheAngleOfArrival) {
+  const Material glass = make_material(0, 1, 1, 7.0);
+  const Vec3f wo = at_degrees(20.0), above = at_degrees(50.0), below = at_degrees(160.0);
+  const double lobe_above = 8.0 / (2.0 * kPi) * std::pow(std::cos(70.0 * kPi / 180.0), 7.0);
+  const double f_above = evaluate(bsdf_at(glass, wo), above).f_cos.x / std::cos(50.0 * kPi / 180.0);
+  const auto schlick = [](double rare_cosine) { return 0.04 + 0.96 * std::pow(1.0 - rare_cosine, 5.0); };
+  EXPECT_NEAR(f_above, schlick(std::cos(50.0 * kPi / 180.0)) * lobe_above / std::cos(20.0 * kPi / 180.0),
+              1e-6);
+  // Below: lobe about the refraction of wo, 1/cos of that, and 1 - F of the ray that arrives at 20
+  // degrees inside the glass, 30.87 outside.
+  const double theta_t = std::asin(std::sin(20.0 * kPi / 180.0) / 1.5);
+  // wi and the refracted direction lie on the same side of the normal's azimuth or across it.
+  const double between = 20.0 * kPi / 180.0 + theta_t;
+  const double outside = std::asin(1.5 * std::sin(20.0 * kPi / 180.0));
+  const double f_below = evaluate(bsdf_at(glass, wo), below).f_cos.x / std::cos(20.0 * kPi / 180.0);
+  EXPECT_NEAR(f_below,
+              (1.0 - schlick(std::cos(outside))) * 8.0 / (2.0 * kPi) *
+                  std::pow(std::cos(between), 7.0) / std::cos(theta_t),
+              1e-6);
+}
+
+TEST(BsdfSides, BehindTheGeometricNormalIsTheMaterial) {
+  const Material glass = make_material(0, 1, 1, 1e10);
+  EXPECT_EQ(bsdf_at(glass, at_degrees(10.0)).eta_t, 1.5);
+  EXPECT_EQ(bsdf_at(glass, at_degrees(10.0)).eta_o, 1.0);
+  EXPECT_EQ(bsdf_at(glass, at_degrees(170.0)).eta_o, 1.5);
+  // Beyond the critical angle nothing is refracted; just within it something is.
+  EXPECT_EQ(bsdf_at(glass, at_degrees(180.0 - 41.9)).cos_t, 0.0);
+  EXPECT_GT(bsdf_at(glass, at_degrees(180.0 - 41.7)).cos_t, 0.0);
+}
+
+// Normals that lean away from the viewer or are turned inside out: no light through an opaque
+// surface, never negative, never NaN.
+TEST(BsdfSides, OddShadingNormalsStayHarmless) {
+  const Material opaque = make_material(0.5F, 0.5F, 0.0F, 10.0);
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    const VertexKey key = numbered(i);
+    const Vec3f ns = sample_uniform_sphere(uniform(key, Dimension::kLensX), uniform(key, Dimension::kLensY));
+    const Vec3f wo = sample_uniform_sphere(uniform(key, Dimension::kLightU), uniform(key, Dimension::kLightV));
+    const Vec3f wi = sample_uniform_sphere(uniform(key, Dimension::kSpare0), uniform(key, Dimension::kSpare1));
+    const Bsdf bsdf = make_bsdf(opaque, kUp, ns, wo, {});
+    EXPECT_GT(bsdf.cos_o, 0.0);
+    const BsdfValue value = evaluate(bsdf, wi);
+    EXPECT_GE(value.f_cos.x, 0.0);
+    EXPECT_TRUE(std::isfinite(value.f_cos.x) && std::isfinite(value.pdf));
+    if (wo.z * wi.z <= 0.0F) {
+      EXPECT_EQ(value.f_cos.x, 0.0);
+    }
+    const BsdfSample sample = sample_bsdf(bsdf, key);
+    if (sample.lobe != Lobe::kNone) {
+      EXPECT_GT(sample.wi.z * wo.z, 0.0F);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raykiln::render
