@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include "support/scene_pieces.hpp"
+
+namespace raykiln::render {
+namespace {
+
+TEST(Settings, NameTheFirstThingThatIsWrong) {
+  const Scene scene = support::mixed_room().scene();
+  EXPECT_EQ(settings_error({}, scene), std::nullopt);
+  const auto check = [&](auto change, const std::string& word) {
+    RenderSettings settings;
+    change(settings);
+    const auto error = settings_error(settings, scene);
+    ASSERT_TRUE(error.has_value()) << word;
+    EXPECT_NE(error->find(word), std::string::npos) << *error;
+  };
+  check([](auto& s) { s.width = 0; }, "width");
+  check([](auto& s) { s.height = kLargestSide + 1; }, "height");
+  check([](auto& s) { s.camera = 1; }, "camera 1");
+  check([](auto& s) { s.camera = -1; }, "camera -1");
+  check([](auto& s) { s.max_depth = -1; }, "max_depth");
+  check([](auto& s) { s.max_depth = kLargestDepth + 1; }, "max_depth");
+  check([](auto& s) { s.branches = 0; }, "branches");
+  check([](auto& s) { s.branches = 65; }, "branches");
+  check([](auto& s) { s.branches = 4, s.max_depth = 8; }, "branches 4");
+}
+
+TEST(Settings, BranchesThatStayWithinTheBoundAreAllowed) {
+  const Scene scene = support::mixed_room().scene();
+  RenderSettings settings;
+  settings.branches = 4;
+  settings.max_depth = 7;  // 21845 rays
+  EXPECT_EQ(settings_error(settings, scene), std::nullopt);
+  settings.branches = 2;
+  settings.max_depth = kLargestDepth;  // 2^4097 overflows double
+  EXPECT_TRUE(settings_error(settings, scene).has_value());
+}
+
+TEST(Settings, FilmBytes) {
+  EXPECT_EQ(film_bytes(1920, 1080), std::uint64_t{1920} * 1080 * Film::bytes_per_pixel());
+  EXPECT_EQ(film_bytes(0, 5), 0U);
+  EXPECT_EQ(film_bytes(-1, 5), 0U);
+  EXPECT_GT(film_bytes(2147483647, 2147483647), std::uint64_t{1} << 62);
+}
+
+}  // namespace
+}  // namespace raykiln::render
