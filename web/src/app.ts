@@ -29,6 +29,8 @@ export class App implements Commands {
   private next_upload_ = 1;
   private drawing_ = false;
   private exposure_timer_ = 0;
+  /** A deleted scene is asked for once, not with every event of its job. */
+  private asked_scenes_ = new Set<string>();
   private submission_ = { body: "", key: "" };
 
   constructor(root: HTMLElement) {
@@ -55,6 +57,11 @@ export class App implements Commands {
     });
   }
 
+  /** Runs `body` once what was dispatched before is on the page: the drawing was queued first. */
+  private after_draw(body: () => void): void {
+    queueMicrotask(body);
+  }
+
   // Places
 
   navigate(path: string): void {
@@ -69,7 +76,7 @@ export class App implements Commands {
     this.poll_?.stop();
     this.dispatch({ type: "route", route });
     this.enter(route);
-    queueMicrotask(() => {
+    this.after_draw(() => {
       window.scrollTo(0, 0);
       this.shell_.focus_page();
     });
@@ -137,7 +144,9 @@ export class App implements Commands {
     if (is_final(kept.state)) {
       this.dispatch({ type: "line", line: { state: "ended", retry_at_ms: 0, reason: "" } });
       void this.load_scene(kept.scene); // its tree is known by now
-    } else if (!this.state_.scenes[kept.scene]) void this.load_scene(kept.scene);
+    } else if (!this.state_.scenes[kept.scene] && !this.asked_scenes_.has(kept.scene)) {
+      void this.load_scene(kept.scene);
+    }
   }
 
   private want_image(job: Job): void {
@@ -163,7 +172,7 @@ export class App implements Commands {
     const cameras = this.state_.scenes[job.scene]?.cameras ?? [];
     this.dispatch({ type: "form_filled", values: from_job(job, cameras) });
     this.navigate("/");
-    queueMicrotask(() => queueMicrotask(() => this.shell_.form.focus()));
+    this.after_draw(() => this.shell_.form.focus());
   }
 
   show_older(): void {
@@ -183,7 +192,7 @@ export class App implements Commands {
     const errors = check_form(this.state_.form);
     if (Object.keys(errors).length > 0) {
       this.dispatch({ type: "form_invalid", errors });
-      queueMicrotask(() => this.shell_.form.focus_error());
+      this.after_draw(() => this.shell_.form.focus_error());
       return;
     }
     this.dispatch({ type: "submit_started" });
@@ -210,7 +219,7 @@ export class App implements Commands {
   private submit_failed(error: unknown): void {
     if (!(error instanceof Problem)) throw error;
     this.dispatch({ type: "submit_failed", problem: error, errors: place_errors(error.fields) });
-    queueMicrotask(() => queueMicrotask(() => this.shell_.form.focus_error()));
+    this.after_draw(() => this.shell_.form.focus_error());
   }
 
   // Scenes
@@ -224,6 +233,7 @@ export class App implements Commands {
   }
 
   private async load_scene(id: string): Promise<void> {
+    this.asked_scenes_.add(id);
     try {
       this.dispatch({ type: "scene", scene: await api.get_scene(id) });
     } catch (error) {
@@ -300,7 +310,7 @@ export class App implements Commands {
       case "upload": return this.shell_.uploads.choose();
       case "form": {
         this.navigate("/");
-        queueMicrotask(() => queueMicrotask(() => this.shell_.form.focus()));
+        this.after_draw(() => this.shell_.form.focus());
         return;
       }
       case "darker": return this.set_exposure(this.state_.exposure - 0.5);

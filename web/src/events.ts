@@ -106,8 +106,9 @@ export function follow_job(id: string, handlers: FollowHandlers): Following {
       no_stream = problem.code === "too_many_streams";
       if (no_stream) continue;
       const delay = Math.max(backoff_ms(attempt, Math.random()), (problem.retry_after ?? 0) * 1000);
+      // A line that was merely cut is back with the first retry: no banner for that.
+      if (attempt > 0) handlers.on_lost(problem, Date.now() + delay);
       attempt += 1;
-      handlers.on_lost(problem, Date.now() + delay);
       const waiting = new AbortController();
       wake = () => waiting.abort();
       await pause(delay, any_signal(stopped.signal, waiting.signal));

@@ -3,12 +3,14 @@
 // picture is asked for with If-None-Match and comes back as an empty 304.
 
 import { image_url } from "./api";
+import { backoff_ms } from "./backoff";
 import { ImagePolicy, type Wanted } from "./image_policy";
 import type { Picture } from "./view/picture";
 
 export class ImageFeed {
   private policy_ = new ImagePolicy();
   private retry_ = 0;
+  private failures_ = 0;
 
   constructor(private picture_: Picture) {}
 
@@ -37,6 +39,7 @@ export class ImageFeed {
         const revision = header === null ? request.revision : Number(header);
         await this.picture_.show(await answer.blob(), revision, request.exposure, current);
         shown = revision;
+        this.failures_ = 0;
       }
     } catch {
       // The line is down or the picture was cut; the next event or retry asks again.
@@ -46,7 +49,8 @@ export class ImageFeed {
     this.start(next);
     if (shown === null && next === null) {
       clearTimeout(this.retry_);
-      this.retry_ = window.setTimeout(() => this.want(request), 2000);
+      const delay = backoff_ms(2 + this.failures_++, Math.random());
+      this.retry_ = window.setTimeout(() => this.want(request), delay);
     }
   }
 }

@@ -39,8 +39,8 @@ export function poll_jobs(handlers: PollHandlers): { stop(): void; now(): void }
         if (stopped.signal.aborted) return;
         if (!(error instanceof Problem)) throw error;
         delay = Math.max(backoff_ms(attempt, Math.random()), (error.retry_after ?? 0) * 1000);
+        if (attempt > 0) handlers.on_lost(error, Date.now() + delay);
         attempt += 1;
-        handlers.on_lost(error, Date.now() + delay);
       }
       if (document.hidden) delay = 3_600_000; // until the tab is visible again
       waiting = new AbortController();

@@ -196,7 +196,7 @@ export const kPageTests = [
   ["an unknown job has a page that says so", with_tab(async (page) => {
     await page.getByRole("heading", { name: "No such job" }).waitFor();
     await page.getByRole("link", { name: "Back to all jobs" }).click();
-    await page.getByText("New render").waitFor();
+    await page.getByRole("heading", { name: "New render" }).waitFor();
   }, "/jobs/j_does_not_exist")],
 
   ["every control has a name, on both pages and in the help", with_tab(async (page, url) => {

@@ -17,7 +17,7 @@ export class JobPage {
   readonly picture = new Picture();
   private title_ = h("h1", { tabindex: -1 });
   private chip_ = h("span", { class: "chip" });
-  private bar_ = h("progress", { max: 1, value: 0, "aria-labelledby": "progress-text" });
+  private bar_ = h("progress", { max: 1, value: 0, "aria-label": "Progress", "aria-describedby": "progress-text" });
   private bar_text_ = h("span", { id: "progress-text" });
   private figures_ = new Facts();
   private failure_ = h("section", { class: "failure", role: "alert", hidden: true });

@@ -45,7 +45,7 @@ export class Shell {
       h("a", { class: "skip", href: "#home" }, "Skip to the content"),
       h("header", { class: "bar" },
         h("a", { class: "brand", href: "/" }, h("span", { class: "ember", "aria-hidden": "true" }), "raykiln"),
-        h("nav", { "aria-label": "Main" }, h("a", { href: "/" }, "Jobs")), this.line_, question),
+        h("nav", { "aria-label": "Main" }, h("a", { href: "/" }, "Jobs"), h("a", { href: "/openapi.yaml" }, "API")), this.line_, question),
       this.banner_, this.home_, this.job.element, this.voice_, this.veil_, this.help.element);
     this.listen(root, commands);
   }
@@ -78,8 +78,10 @@ export class Shell {
       const link = (event.target as Element).closest("a");
       const plain = event.button === 0 && !event.metaKey && !event.ctrlKey && !event.shiftKey;
       if (!link || !plain || link.hasAttribute("download") || link.origin !== location.origin) return;
+      const skip = link.classList.contains("skip");
+      if (!skip && link.pathname !== "/" && !link.pathname.startsWith("/jobs/")) return;
       event.preventDefault();
-      if (link.classList.contains("skip")) this.focus_page();
+      if (skip) this.focus_page();
       else commands.navigate(link.pathname);
     });
   }
