@@ -149,12 +149,12 @@ export class App implements Commands {
     }
   }
 
-  private want_image(job: Job): void {
+  private want_image(job: Job, urgent = false): void {
     const route = this.state_.route;
     if (route.page !== "job" || route.id !== job.id || !job.image) return;
     this.image_.want({
       job: job.id, revision: job.image.revision, exposure: this.state_.exposure,
-    });
+    }, urgent || is_final(job.state));
   }
 
   cancel(id: string): void {
@@ -284,7 +284,7 @@ export class App implements Commands {
     this.exposure_timer_ = window.setTimeout(() => {
       const route = this.state_.route;
       const job = route.page === "job" ? this.state_.jobs[route.id] : undefined;
-      if (job) this.want_image(job);
+      if (job) this.want_image(job, true);
     }, kExposureSettleMs);
   }
 

@@ -4,24 +4,33 @@
 
 import { image_url } from "./api";
 import { backoff_ms } from "./backoff";
-import { ImagePolicy, type Wanted } from "./image_policy";
+import { ImagePolicy, pace_ms, type Wanted } from "./image_policy";
 import type { Picture } from "./view/picture";
 
 export class ImageFeed {
   private policy_ = new ImagePolicy();
   private retry_ = 0;
   private failures_ = 0;
+  private held_back_ = 0;
+  private begun_ms_ = Number.NEGATIVE_INFINITY;
+  private last_ms_ = 0;
 
   constructor(private picture_: Picture) {}
 
-  want(wanted: Wanted): void {
-    this.start(this.policy_.want(wanted));
+  /** `urgent`: asked for by a person, or the last picture of all; anything else is paced. */
+  want(wanted: Wanted, urgent: boolean): void {
+    clearTimeout(this.held_back_);
+    const wait = urgent ? 0 : pace_ms(this.last_ms_, performance.now() - this.begun_ms_);
+    if (wait === 0) this.start(this.policy_.want(wanted));
+    else this.held_back_ = window.setTimeout(() => this.start(this.policy_.want(wanted)), wait);
   }
 
   /** The page shows another job now: what is on the stage goes. */
   reset(): void {
     this.policy_ = new ImagePolicy();
     clearTimeout(this.retry_);
+    clearTimeout(this.held_back_);
+    this.begun_ms_ = Number.NEGATIVE_INFINITY;
     this.picture_.clear();
   }
 
@@ -31,6 +40,7 @@ export class ImageFeed {
 
   private async fetch(request: Wanted, policy: ImagePolicy): Promise<void> {
     let shown: number | null = null;
+    this.begun_ms_ = performance.now();
     const current = (): boolean => policy === this.policy_ && policy.current(request);
     try {
       const answer = await fetch(image_url(request.job, "png", request.exposure, request.revision));
@@ -45,12 +55,13 @@ export class ImageFeed {
       // The line is down or the picture was cut; the next event or retry asks again.
     }
     if (policy !== this.policy_) return;
+    this.last_ms_ = performance.now() - this.begun_ms_;
     const next = policy.settled(shown);
     this.start(next);
     if (shown === null && next === null) {
       clearTimeout(this.retry_);
       const delay = backoff_ms(2 + this.failures_++, Math.random());
-      this.retry_ = window.setTimeout(() => this.want(request), delay);
+      this.retry_ = window.setTimeout(() => this.want(request, true), delay);
     }
   }
 }

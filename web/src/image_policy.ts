@@ -15,6 +15,20 @@ const same_picture = (a: Wanted, b: Wanted): boolean =>
 const covers = (shown: Wanted | null, wanted: Wanted): boolean =>
   shown !== null && same_picture(shown, wanted) && shown.revision >= wanted.revision;
 
+const kShortestPaceMs = 200;
+const kLongestPaceMs = 3000;
+
+/**
+ * How long to hold back a request for a newer revision. The server encodes each
+ * picture that is asked for, on the machine that renders: asking at most a
+ * fifth of the time keeps watching cheap for large pictures too.
+ * `last_ms`: how long the last request took; `since_ms`: time since it began.
+ */
+export function pace_ms(last_ms: number, since_ms: number): number {
+  const pace = Math.min(kLongestPaceMs, Math.max(kShortestPaceMs, 5 * last_ms));
+  return Math.max(0, pace - since_ms);
+}
+
 export class ImagePolicy {
   private wanted_: Wanted | null = null;
   private in_flight_: Wanted | null = null;

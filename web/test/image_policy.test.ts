@@ -1,5 +1,5 @@
 import { describe, expect, test } from "vitest";
-import { ImagePolicy, type Wanted } from "../src/image_policy";
+import { ImagePolicy, pace_ms, type Wanted } from "../src/image_policy";
 
 const at = (revision: number, exposure = 0, job = "j"): Wanted => ({ job, revision, exposure });
 
@@ -88,3 +88,8 @@ describe("ImagePolicy", () => {
     }
   });
 });
+
+test.each([
+  ["the first request", 0, Number.POSITIVE_INFINITY, 0], ["small pictures", 10, 50, 150], ["large ones take a fifth of the time", 400, 500, 1500],
+  ["huge ones are still renewed", 9000, 9000, 0], ["late enough", 100, 600, 0],
+])("pace of %s", (_name, last, since, wait) => expect(pace_ms(last, since)).toBe(wait));

@@ -142,6 +142,21 @@ export const kOddTests = [
     rmSync(folder, { recursive: true });
   })],
 
+  ["the list goes on to older jobs", with_mock(async (page, mock) => {
+    for (let index = 0; index < 60; index += 1) {
+      const job = mock.add_job({ scene: "0".repeat(64), name: `job ${index}`, width: 8, height: 8, stop: { samples: 1 } });
+      job.created_at = new Date(1.7e12 + index * 1000).toISOString();
+      mock.finish(job, "cancelled");
+    }
+    await page.reload();
+    await until(() => page.locator(".card").count(), (count) => count === 50, "not one page of jobs");
+    assert.match(await page.locator(".card-title").first().innerText(), /job 59/);
+    await page.getByRole("button", { name: "Show older jobs" }).click();
+    await until(() => page.locator(".card").count(), (count) => count === 60, "no older jobs");
+    assert.equal(await page.getByRole("button", { name: "Show older jobs" }).isVisible(), false);
+    assert.match(await page.locator(".card-title").last().innerText(), /job 0/);
+  })],
+
   ["progress is spoken in quarters, not in every step", with_mock(async (page) => {
     await page.evaluate(() => {
       window.spoken = [];

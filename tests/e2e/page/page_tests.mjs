@@ -19,8 +19,28 @@ const with_tab = (body, path = "/") => async ({ browser, url }) => {
   }
 };
 
-/** The job that several tests look at once it is done. */
-let done_job = "";
+/** A finished job that several tests look at; made once a server, by the API alone. */
+const done_jobs = new Map();
+
+async function done_job(url) {
+  if (!done_jobs.has(url)) done_jobs.set(url, await render_by_api(url));
+  return done_jobs.get(url);
+}
+
+async function render_by_api(url) {
+  const form = new FormData();
+  for (const { name, buffer } of box_files("done")) form.append("file", new Blob([buffer]), name);
+  const scene = await (await fetch(`${url}/v1/scenes`, { method: "POST", body: form })).json();
+  const { samples, ...size } = kSmall;
+  const answer = await fetch(`${url}/v1/jobs`, {
+    method: "POST", headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ scene: scene.id, name: "done", ...size, stop: { samples } }),
+  });
+  const { id } = await answer.json();
+  const state = async () => (await (await fetch(`${url}/v1/jobs/${id}`)).json()).state;
+  await until(state, (value) => value === "completed", "the job does not complete");
+  return id;
+}
 
 export const kPageTests = [
   ["an upload by the picker reports what the scene holds", with_tab(async (page) => {
@@ -62,15 +82,14 @@ export const kPageTests = [
     }
     await page.keyboard.press("Enter");
     await page.waitForURL(/\/jobs\//);
-    done_job = page.url().split("/").pop();
     assert.equal(await page.evaluate(() => document.activeElement?.tagName), "H1");
     await state_is(page, "completed");
     assert.match(await page.locator("#progress-text").innerText(), /^Done in /);
     assert.match(await page.locator(".panel .facts").first().innerText(), /8 \/ 8/);
   })],
 
-  ["the picture appears and is not black", with_tab(async (page) => {
-    await page.goto(`${page.url()}jobs/${done_job}`);
+  ["the picture appears and is not black", with_tab(async (page, url) => {
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     await picture(page);
     const seen = await until(() => measure(page), (found) => found.lit > 0.5, "the picture stays dark");
     assert.deepEqual([seen.width, seen.height], [160, 120]);
@@ -98,7 +117,7 @@ export const kPageTests = [
   })],
 
   ["opened late, after completion: everything is there", with_tab(async (page, url) => {
-    await page.goto(`${url}/jobs/${done_job}`);
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     await state_is(page, "completed");
     await picture(page);
     const text = await page.locator(".panel").innerText();
@@ -107,7 +126,7 @@ export const kPageTests = [
   })],
 
   ["exposure changes the picture and the PNG link", with_tab(async (page, url) => {
-    await page.goto(`${url}/jobs/${done_job}`);
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     await picture(page);
     const neutral = await until(() => measure(page), (found) => found.mean > 1, "dark");
     const slider = page.getByLabel("Exposure");
@@ -123,7 +142,7 @@ export const kPageTests = [
   })],
 
   ["a reload keeps the job and its picture", with_tab(async (page, url) => {
-    await page.goto(`${url}/jobs/${done_job}`);
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     await picture(page);
     await page.reload();
     await state_is(page, "completed");
@@ -132,7 +151,7 @@ export const kPageTests = [
   })],
 
   ["zoom to 100 % and back", with_tab(async (page, url) => {
-    await page.goto(`${url}/jobs/${done_job}`);
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     await picture(page);
     await page.getByRole("button", { name: "100 %" }).click();
     await until(() => page.locator(".stage canvas").boundingBox(), (box) => Math.round(box.width) === 160, "not 160 pixels wide");
@@ -141,7 +160,7 @@ export const kPageTests = [
   })],
 
   ["the downloads are a PNG and an EXR", with_tab(async (page, url) => {
-    await page.goto(`${url}/jobs/${done_job}`);
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     for (const [name, magic] of [["PNG", [0x89, 0x50, 0x4e, 0x47]], ["EXR", [0x76, 0x2f, 0x31, 0x01]]]) {
       const link = page.getByRole("link", { name });
       assert.match(await link.getAttribute("download"), new RegExp(`\\.${name.toLowerCase()}$`));
@@ -151,8 +170,8 @@ export const kPageTests = [
     }
   })],
 
-  ["the list shows the job with a thumbnail and leads to it", with_tab(async (page) => {
-    const card = page.locator(`.card[href="/jobs/${done_job}"]`);
+  ["the list shows the job with a thumbnail and leads to it", with_tab(async (page, url) => {
+    const card = page.locator(`.card[href="/jobs/${await done_job(url)}"]`);
     await card.locator(".chip[data-state=completed]").waitFor();
     await until(() => card.locator("img").evaluate((image) => image.naturalWidth), (width) => width > 0, "no thumbnail");
     await card.click();
@@ -162,7 +181,7 @@ export const kPageTests = [
   })],
 
   ["render again fills the form with what was asked", with_tab(async (page, url) => {
-    await page.goto(`${url}/jobs/${done_job}`);
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     await state_is(page, "completed");
     await page.getByRole("button", { name: "Render again" }).click();
     for (const [key, value] of Object.entries(kSmall)) {
@@ -207,14 +226,14 @@ export const kPageTests = [
     await page.locator("body").press("?");
     await page.getByRole("dialog").waitFor();
     await page.keyboard.press("Escape");
-    await page.goto(`${url}/jobs/${done_job}`);
+    await page.goto(`${url}/jobs/${await done_job(url)}`);
     await state_is(page, "completed");
     await picture(page);
     assert.deepEqual(await label_faults(page), []);
   })],
 
   ["a narrow screen needs no sideways scrolling", async ({ browser, url }) => {
-    for (const path of ["/", `/jobs/${done_job}`]) {
+    for (const path of ["/", `/jobs/${await done_job(url)}`]) {
       const tab = await open_tab(browser, url, path, { width: 360, height: 740 });
       await tab.page.locator(path === "/" ? ".card >> nth=0" : ".stage canvas:not([hidden])").waitFor();
       const overhang = await tab.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
@@ -227,7 +246,7 @@ export const kPageTests = [
     const tab = await open_tab(browser, url);
     const addresses = [];
     tab.page.on("request", (request) => addresses.push(request.url()));
-    await tab.page.goto(`${url}/jobs/${done_job}`);
+    await tab.page.goto(`${url}/jobs/${await done_job(url)}`);
     await picture(tab.page);
     assert.deepEqual(addresses.filter((address) => !address.startsWith(url) && !address.startsWith("blob:")), []);
     await tab.close();
