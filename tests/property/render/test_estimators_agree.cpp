@@ -1,0 +1,87 @@
+// Different ways to estimate the same light have the same mean.
+#include <gtest/gtest.h>
+
+#include "support/scene_pieces.hpp"
+
+namespace raykiln::render {
+namespace {
+
+using support::diffuse_material;
+using support::Estimate;
+using support::SceneBuilder;
+
+/// A room with a lamp, glossy, rough glass and translucent pieces; nothing too sharp for uniform
+/// directions to find.
+SceneBuilder soft_room() {
+  SceneBuilder b;
+  b.box(Vec3f(-1.0F), Vec3f(1.0F), b.material(diffuse_material({0.6F, 0.5F, 0.4F})), true);
+  const auto lamp = b.material(diffuse_material(Rgb(0.2F), Rgb(3.0F)));
+  b.quad({Vec3f(-0.6F, 0.95F, -0.6F), {0.6F, 0.95F, -0.6F}, {0.6F, 0.95F, 0.6F}, {-0.6F, 0.95F, 0.6F}}, lamp);
+  Material gloss = support::mirror_material(0.4F, 6.0);
+  gloss.diffuse = Rgb(0.3F);
+  b.box({-0.7F, -0.9F, -0.6F}, {-0.1F, -0.2F, 0.0F}, b.material(gloss));
+  b.box({0.1F, -0.8F, -0.4F}, {0.6F, -0.3F, 0.2F}, b.material(support::glass_material(1.3F, 8.0)));
+  Material leaf = diffuse_material(Rgb(0.8F));
+  leaf.transparent = 1.0F;
+  b.quad({Vec3f(-0.5F, 0.3F, -0.7F), {0.5F, 0.3F, -0.7F}, {0.5F, 0.4F, 0.0F}, {-0.5F, 0.4F, 0.0F}},
+         b.material(leaf));
+  b.camera({0, 0, 0.9F}, {0, -0.3F, -1}, {0, 1, 0}, 1.2F);
+  return b;
+}
+
+RenderSettings base() {
+  RenderSettings settings;
+  settings.width = settings.height = 16;
+  settings.max_depth = 3;
+  return settings;
+}
+
+// 4 pairs at 4 sigma of the difference: false alarm 2.5e-4.
+TEST(EstimatorsAgree, OnTheMeanOfASmallRoom) {
+  const auto scene = soft_room().prepare();
+  const auto render = [&](auto change, std::uint64_t samples) {
+    RenderSettings settings = base();
+    change(settings);
+    return support::estimate(support::render_all(*scene, settings, samples));
+  };
+  const Estimate mixed = render([](auto&) {}, 512);
+  const Estimate bsdf = render([](auto& s) { s.emitter_sampling = false, s.seed = 1; }, 1024);
+  const Estimate branches = render([](auto& s) { s.branches = 3, s.seed = 2; }, 64);
+  const Estimate sphere = render(
+      [](auto& s) { s.direction_sampling = DirectionSampling::kUniformSphere, s.seed = 3; }, 512);
+  const Estimate plain = render(
+      [](auto& s) {
+        s.direction_sampling = DirectionSampling::kUniformSphere;
+        s.emitter_sampling = false;
+        s.seed = 4;
+      },
+      2048);
+  const auto expect_agree = [&](const Estimate& other, const char* what) {
+    const double sigma = std::hypot(mixed.standard_error, other.standard_error);
+    EXPECT_NEAR(luminance(mixed.mean), luminance(other.mean), 4.0 * sigma)
+        << what << ", errors " << mixed.standard_error << ' ' << other.standard_error;
+    EXPECT_LT(sigma, 0.02 * luminance(mixed.mean)) << what << ": too noisy to say anything";
+  };
+  expect_agree(bsdf, "without emitter sampling");
+  expect_agree(branches, "three rays at each hit");
+  expect_agree(sphere, "uniform directions and emitters");
+  expect_agree(plain, "uniform directions alone");
+}
+
+// Emitter sampling is there for small lamps: less variance at equal samples.
+TEST(EstimatorsAgree, EmitterSamplingTamesASmallLamp) {
+  SceneBuilder b;
+  b.quad({Vec3f(-1, -1, 0), {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, b.material(diffuse_material(Rgb(0.8F))));
+  b.quad({Vec3f(-0.05F, -0.05F, 1), {-0.05F, 0.05F, 1}, {0.05F, 0.05F, 1}, {0.05F, -0.05F, 1}},
+         b.material(diffuse_material(Rgb(0.0F), Rgb(100.0F))));
+  b.camera({0, 0, 0.9F}, Vec3f(0.0F), {0, 1, 0}, 0.9F);
+  const auto scene = b.prepare();
+  RenderSettings settings = base();
+  const Estimate with = support::estimate(support::render_all(*scene, settings, 64));
+  settings.emitter_sampling = false;
+  const Estimate without = support::estimate(support::render_all(*scene, settings, 64));
+  EXPECT_LT(with.standard_error, 0.1 * without.standard_error);
+}
+
+}  // namespace
+}  // namespace raykiln::render
