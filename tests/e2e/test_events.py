@@ -96,7 +96,7 @@ def test_a_reader_that_never_reads_slows_nothing_and_gets_the_final_state(launch
 
 @pytest.mark.measured
 def test_memory_of_many_readers_is_bounded(launch):
-    api = launch(options=["--max-connections", "600", "--max-streams", "500"])
+    api = launch(options=["--max-connections", "600", "--max-watchers", "500"])
     job = api.job(api.scene(scenes.grid_zip(60)), width=256, height=256,
                   stop={"samples": 1048576})
     api.wait_until(job, lambda snapshot: snapshot["image"])

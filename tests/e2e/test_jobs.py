@@ -127,7 +127,7 @@ def test_idempotency_key(api, samples):
 
 
 def test_a_full_queue_says_when_to_come_back(launch):
-    api = launch(workers=1, options=["--max-jobs", "3"])
+    api = launch(workers=1, options=["--max-active", "1", "--max-queued", "2"])
     scene = api.scene(scenes.box_zip())
     jobs = [api.job(scene, **LONG) for _ in range(3)]
     refused = api.submit(scene, expect=(429,))

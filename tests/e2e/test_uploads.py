@@ -56,7 +56,7 @@ def test_memory_of_a_large_multipart(launch):
 
 
 def test_an_upload_beyond_the_limit(launch):
-    api = launch(options=["--max-upload-mib", "4"])
+    api = launch(options=["--max-upload-bytes", str(4 * CHUNK)])
     before = api.daemon.files()
 
     def endless():

@@ -101,7 +101,7 @@ def test_the_installed_programs_start(staging, tmp_path):
     log = tmp_path / "log"
     with open(log, "w") as sink:
         # No build directory, no source tree: an empty working directory and environment.
-        daemon = subprocess.Popen([str(staging / "bin" / "raykilnd"), "--port", "0",
+        daemon = subprocess.Popen([str(staging / "bin" / "raykilnd"), "--listen", "127.0.0.1:0",
                                    "--store", str(tmp_path / "store")], cwd=tmp_path,
                                   env={"PATH": "/usr/bin:/bin"}, stdout=sink, stderr=sink)
     try:

@@ -8,6 +8,7 @@ last line can only say "0 failed" when everything ran.
 import argparse
 import os
 import shutil
+import signal
 import sys
 import time
 from dataclasses import dataclass, field
@@ -56,6 +57,8 @@ class Builds:
 
     def require(self, name):
         if name not in self.done:
+            for before in BUILT_BEFORE.get(name, []):
+                self.require(before)
             start = time.monotonic()
             self.done[name] = RECIPES[name]()
             self.seconds[name] = time.monotonic() - start
@@ -88,7 +91,8 @@ def build_folders(preset, folders, *extra) -> bool:
     if step(name, ["cmake", "--preset", preset]) != 0:
         return False
     targets = [f"tests/{f}/all" for f in folders_in(preset, folders)] + list(extra)
-    return step(name, ["ninja", "-C", str(BUILD / preset), "-j", JOBS, *targets]) == 0
+    # Without a target ninja would build everything, which is not what was asked.
+    return bool(targets) and step(name, ["ninja", "-C", str(BUILD / preset), "-j", JOBS, *targets]) == 0
 
 
 RECIPES = {
@@ -98,6 +102,9 @@ RECIPES = {
     "asan-ubsan": lambda: build_preset("asan-ubsan"),
     "tsan": lambda: build_folders("tsan", SERVER, "raykilnd", "raykiln"),
 }
+
+# The daemon carries the page inside, so the page comes first.
+BUILT_BEFORE = {name: ["web"] for name in ("test", "asan-ubsan", "tsan")}
 
 
 def ctest(name, directory, env=None, extra=()) -> Tally:
@@ -234,6 +241,8 @@ def main(arguments) -> int:
         for suite in SUITES:
             print(f"{suite.name:<12} {suite.what}{' (--full)' if suite.full_only else ''}")
         return 0
+    # So that what was started is ended on SIGTERM as it is on Ctrl-C.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     shutil.rmtree(LOGS, ignore_errors=True)
     LOGS.mkdir(parents=True)
     chosen = [s for s in SUITES if s.name in options.only] if options.only else \

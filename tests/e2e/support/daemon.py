@@ -23,6 +23,7 @@ class Daemon:
         self.process = None
         self.port = None
         self.log_path = self.store.parent / f"{self.store.name}.log"
+        self.ready_path = self.store.parent / f"{self.store.name}.ready"
 
     @property
     def url(self) -> str:
@@ -33,19 +34,20 @@ class Daemon:
         return self.log_path.read_text(errors="replace")
 
     def start(self) -> "Daemon":
-        command = [str(BIN / "raykilnd"), "--port", "0", "--store", str(self.store),
-                   "--workers", str(self.workers), *self.options]
-        begin = self.log_path.stat().st_size if self.log_path.exists() else 0
+        command = [str(BIN / "raykilnd"), "--listen", "127.0.0.1:0", "--store",
+                   str(self.store), "--workers", str(self.workers), "--ready-file",
+                   str(self.ready_path), *self.options]
+        self.ready_path.unlink(missing_ok=True)
         with open(self.log_path, "ab") as sink:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=sink,
                                             stderr=sink, env={**os.environ, **self.environment})
-        self.port = self._wait_for_port(begin, time.monotonic() + 10 * SLOW)
+        self.port = self._wait_for_port(time.monotonic() + 10 * SLOW)
         return self
 
-    def _wait_for_port(self, begin: int, deadline: float) -> int:
+    def _wait_for_port(self, deadline: float) -> int:
         while time.monotonic() < deadline:
-            found = _LISTENING.search(self.log[begin:])
-            if found:
+            written = self.ready_path.read_text() if self.ready_path.exists() else ""
+            if found := _LISTENING.search(written):
                 return int(found.group(1))
             if self.process.poll() is not None:
                 break
