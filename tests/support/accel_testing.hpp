@@ -1,56 +1,19 @@
-// What several tests of the kd-tree share: runners, rays of every kind, bit equality of hits.
+// What several tests of the kd-tree share: rays of every kind, bit equality of hits.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <cstring>
-#include <functional>
 #include <memory>
-#include <thread>
 #include <vector>
 
 #include "raykiln/accel/kdtree_data.hpp"
 #include "raykiln/math/float_bits.hpp"
 #include "support/mesh_generators.hpp"
+#include "support/thread_runner.hpp"
 
 namespace raykiln::test {
-
-/// Runs closures on up to `threads` threads in all, also when called from inside a closure.
-class ThreadRunner final : public render::TaskRunner {
- public:
-  explicit ThreadRunner(int threads) : threads_(threads), spare_(threads - 1) {}
-
-  void run(std::span<const std::function<void()>> tasks) override {
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t i = next++; i < tasks.size(); i = next++) tasks[i]();
-    };
-    std::vector<std::jthread> extra;
-    while (extra.size() + 1 < tasks.size() && take_spare()) {
-      extra.emplace_back([&] {
-        work();
-        ++spare_;
-      });
-    }
-    work();
-  }
-  [[nodiscard]] int concurrency() const override { return threads_; }
-
- private:
-  bool take_spare() {
-    int spare = spare_.load();
-    while (spare > 0) {
-      if (spare_.compare_exchange_weak(spare, spare - 1)) return true;
-    }
-    return false;
-  }
-
-  int threads_;
-  std::atomic<int> spare_;
-};
 
 inline std::shared_ptr<const render::KdTree> build(const TestMesh& mesh,
                                                    const render::BuildParams& params = {}) {

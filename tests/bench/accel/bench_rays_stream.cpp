@@ -1,0 +1,267 @@
+// How many rays a second do closest_hits and any_hits do on one thread? Rays of a picture: primary
+// ones, two diffuse bounces, and shadow rays. A sample of every class is checked by brute force.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstring>
+#include <numbers>
+
+#include "bench_report.hpp"
+#include "raykiln/math/frame.hpp"
+
+namespace {
+
+using raykiln::bench::JsonObject;
+using raykiln::bench::Stopwatch;
+using raykiln::render::BuildParams;
+using raykiln::render::Hit;
+using raykiln::render::KdTree;
+using raykiln::render::kNoHit;
+using raykiln::render::Occlusion;
+using raykiln::render::Ray;
+using raykiln::render::Traversal;
+using raykiln::render::TraversalCounters;
+using raykiln::render::Vec3f;
+using raykiln::test::TestMesh;
+using raykiln::test::TestRandom;
+
+struct Options {
+  std::vector<std::string> families{"terrain", "soup", "sphere"};
+  std::size_t triangles = 1'000'000;
+  BuildParams params;
+  std::uint32_t image = 512;
+  std::size_t stream = 4096;
+  std::size_t check = 200;
+  int repeat = 3;
+  std::uint64_t seed = 1;
+  std::string json;
+};
+
+// Jittered pinhole outside the box looking at its middle, in tiles of 8 x 8 pixels.
+std::vector<Ray> primary_rays(const raykiln::render::Bounds3f& box, const Options& options) {
+  TestRandom random(options.seed);
+  const Vec3f centre = (box.lo + box.hi) * 0.5F;
+  const float radius = 0.5F * raykiln::render::length(box.hi - box.lo);
+  const Vec3f eye = centre + radius * Vec3f(1.1F, -1.3F, 1.2F);
+  const raykiln::render::Frame frame(raykiln::render::normalize(centre - eye));
+  std::vector<Ray> rays;
+  const std::uint32_t tiles = std::max(1U, options.image / 8);
+  for (std::uint32_t tile = 0; tile < tiles * tiles; ++tile) {
+    for (std::uint32_t pixel = 0; pixel < 64; ++pixel) {
+      const auto x = static_cast<float>(tile % tiles * 8 + pixel % 8);
+      const auto y = static_cast<float>(tile / tiles * 8 + pixel / 8);
+      const auto scale = 1.0F / static_cast<float>(tiles * 8);
+      const float px = (x + random.uniform()) * scale - 0.5F;
+      const float py = (y + random.uniform()) * scale - 0.5F;
+      Ray ray;
+      ray.o = eye;
+      ray.d = frame.to_world({px, py, 1.1F});
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+struct SurfacePoint {
+  Vec3f position, normal;  ///< the normal on the side where the ray came from
+};
+
+std::vector<SurfacePoint> surface_points(const TestMesh& mesh, const std::vector<Ray>& rays,
+                                         const std::vector<Hit>& hits) {
+  std::vector<SurfacePoint> points;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].id == kNoHit) continue;
+    const auto p = mesh.corners(hits[i].id);
+    Vec3f n = raykiln::render::normalize(raykiln::render::cross(p[1] - p[0], p[2] - p[0]));
+    if (raykiln::render::dot(n, rays[i].d) > 0.0F) n = -n;
+    if (!(raykiln::render::dot(n, n) > 0.5F)) continue;
+    const Vec3f at = p[0] * (1.0F - hits[i].u - hits[i].v) + p[1] * hits[i].u + p[2] * hits[i].v;
+    points.push_back({at + n * 1e-5F, n});
+  }
+  return points;
+}
+
+std::vector<Ray> cosine_bounces(const std::vector<SurfacePoint>& points, std::uint64_t seed) {
+  TestRandom random(seed);
+  std::vector<Ray> rays;
+  for (const SurfacePoint& point : points) {
+    const float r = std::sqrt(random.uniform());
+    const float phi = 2.0F * std::numbers::pi_v<float> * random.uniform();
+    const Vec3f local(r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0F - r * r));
+    Ray ray;
+    ray.o = point.position;
+    ray.d = raykiln::render::Frame(point.normal).to_world(local);
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+std::vector<Ray> shadow_rays(const std::vector<SurfacePoint>& points,
+                             const raykiln::render::Bounds3f& box) {
+  const Vec3f size = box.hi - box.lo;
+  const Vec3f light = box.hi + size * Vec3f(-0.3F, -0.6F, 0.5F);
+  std::vector<Ray> rays;
+  for (const SurfacePoint& point : points) {
+    Ray ray;
+    ray.o = point.position;
+    ray.d = light - point.position;
+    ray.t_max = 1.0F;
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+template <typename Query>
+double best_seconds(std::size_t n, const Options& options, Query&& query) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int r = 0; r < options.repeat; ++r) {
+    const Stopwatch watch;
+    for (std::size_t i = 0; i < n; i += options.stream) query(i, std::min(options.stream, n - i));
+    best = std::min(best, watch.elapsed().cpu);
+  }
+  return best;
+}
+
+class Bench {
+ public:
+  Bench(const Options& options, const KdTree& tree, std::string family)
+      : options_(options), tree_(tree), family_(std::move(family)) {}
+
+  std::vector<Hit> closest(const char* name, const std::vector<Ray>& rays) {
+    std::vector<Hit> hits(rays.size());
+    const std::span<const Ray> all(rays);
+    TraversalCounters counters;
+    const double seconds = best_seconds(rays.size(), options_, [&](std::size_t at, std::size_t n) {
+      raykiln::render::closest_hits(tree_, all.subspan(at, n), std::span(hits).subspan(at, n), {},
+                                    Traversal::kTree, &counters);
+    });
+    const auto sample = sample_of(rays);
+    std::vector<Hit> expected(sample.size());
+    std::vector<Hit> found(sample.size());
+    raykiln::render::closest_hits(tree_, sample, expected, {}, Traversal::kBruteForce);
+    raykiln::render::closest_hits(tree_, sample, found);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < sample.size(); ++i) {
+      wrong += std::memcmp(&expected[i], &found[i], sizeof(Hit)) != 0 ? 1U : 0U;
+    }
+    report(name, rays.size(), seconds, counters, sample.size(), wrong);
+    return hits;
+  }
+
+  void any(const char* name, const std::vector<Ray>& rays) {
+    std::vector<Occlusion> result(rays.size());
+    const std::span<const Ray> all(rays);
+    TraversalCounters counters;
+    const double seconds = best_seconds(rays.size(), options_, [&](std::size_t at, std::size_t n) {
+      raykiln::render::any_hits(tree_, all.subspan(at, n), std::span(result).subspan(at, n),
+                                Traversal::kTree, &counters);
+    });
+    const auto sample = sample_of(rays);
+    std::vector<Occlusion> expected(sample.size());
+    std::vector<Occlusion> found(sample.size());
+    raykiln::render::any_hits(tree_, sample, expected, Traversal::kBruteForce);
+    raykiln::render::any_hits(tree_, sample, found);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < sample.size(); ++i) wrong += expected[i] != found[i] ? 1U : 0U;
+    report(name, rays.size(), seconds, counters, sample.size(), wrong);
+  }
+
+  std::vector<JsonObject> results;
+  std::size_t wrong_in_all = 0;
+
+ private:
+  [[nodiscard]] std::vector<Ray> sample_of(const std::vector<Ray>& rays) const {
+    std::vector<Ray> sample;
+    TestRandom random(options_.seed + 99);
+    for (std::size_t i = 0; i < options_.check && !rays.empty(); ++i) {
+      sample.push_back(rays[random.below(static_cast<std::uint32_t>(rays.size()))]);
+    }
+    return sample;
+  }
+
+  void report(const char* name, std::size_t rays, double seconds, const TraversalCounters& counters,
+              std::size_t checked, std::size_t bad) {
+    const double mrays = static_cast<double>(rays) / seconds / 1e6;
+    const auto n = static_cast<double>(std::max<std::uint64_t>(1, counters.rays));
+    const double nodes = static_cast<double>(counters.node_steps) / n;
+    const double leaves = static_cast<double>(counters.leaf_visits) / n;
+    const double blocks = static_cast<double>(counters.block_tests) / n;
+    std::printf("%-8s %-10s %8zu %8.3f %7.1f %7.2f %7.2f   %zu of %zu wrong\n", family_.c_str(),
+                name, rays, mrays, nodes, leaves, blocks, bad, checked);
+    std::fflush(stdout);
+    wrong_in_all += bad;
+    results.emplace_back();
+    results.back()
+        .add("family", family_)
+        .add("rays_of", std::string(name))
+        .add("rays", static_cast<std::uint64_t>(rays))
+        .add("mrays_per_cpu_second", mrays)
+        .add("node_steps_per_ray", nodes)
+        .add("leaf_visits_per_ray", leaves)
+        .add("blocks_per_ray", blocks)
+        .add("checked", static_cast<std::uint64_t>(checked))
+        .add("wrong", static_cast<std::uint64_t>(bad));
+  }
+
+  const Options& options_;
+  const KdTree& tree_;
+  std::string family_;
+};
+
+int run(const Options& options) {
+  std::printf("mesh     rays of        rays   Mray/s nodes/r leaves/r blocks/r   brute force\n");
+  std::vector<JsonObject> results;
+  std::size_t wrong = 0;
+  for (const std::string& family : options.families) {
+    const auto mesh = raykiln::bench::make_mesh(family, options.triangles, options.seed);
+    if (!mesh) {
+      std::fprintf(stderr, "unknown family %s; there are %s\n", family.c_str(),
+                   raykiln::bench::kFamilies);
+      return 2;
+    }
+    raykiln::render::SerialTaskRunner runner;
+    const auto tree = raykiln::render::build_kdtree(mesh->view(), options.params, runner);
+    Bench bench(options, *tree, family);
+    auto rays = primary_rays(raykiln::render::bounds(*tree), options);
+    auto points = surface_points(*mesh, rays, bench.closest("primary", rays));
+    bench.any("shadow", shadow_rays(points, raykiln::render::bounds(*tree)));
+    for (const char* name : {"diffuse 1", "diffuse 2"}) {
+      rays = cosine_bounces(points, options.seed + 1);
+      points = surface_points(*mesh, rays, bench.closest(name, rays));
+    }
+    results.insert(results.end(), bench.results.begin(), bench.results.end());
+    wrong += bench.wrong_in_all;
+  }
+  if (!options.json.empty()) {
+    auto report = raykiln::bench::conditions("bench_rays_stream", 1, options.seed);
+    report.add("triangles", static_cast<std::uint64_t>(options.triangles))
+        .add("rays_per_call", static_cast<std::uint64_t>(options.stream))
+        .add("leaf_width", static_cast<std::uint64_t>(options.params.leaf_width))
+        .add_raw("results", raykiln::bench::json_list(results));
+    if (!raykiln::bench::write_file(options.json, report.text())) return 1;
+  }
+  return wrong == 0 ? 0 : 3;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Rays a second of closest_hits and any_hits on one thread, checked by brute force. Exit code "
+      "3: a checked ray differed.");
+  app.add_option("--families", options.families, std::string("meshes: ") + raykiln::bench::kFamilies)
+      ->delimiter(',');
+  app.add_option("--triangles", options.triangles, "of each mesh, about")
+      ->check(CLI::Range(std::size_t{2}, std::size_t{100'000'000}));
+  app.add_option("--leaf-width", options.params.leaf_width, "8 or 16")->check(CLI::IsMember({8, 16}));
+  app.add_option("--image", options.image, "pixels along a side of the picture")
+      ->check(CLI::Range(8, 8192));
+  app.add_option("--stream", options.stream, "rays a call")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
+  app.add_option("--check", options.check, "rays of each class to check by brute force");
+  app.add_option("--repeat", options.repeat, "best of this many")->check(CLI::Range(1, 1000));
+  app.add_option("--seed", options.seed, "of meshes and rays");
+  app.add_option("--json", options.json, "write the figures to this file");
+  CLI11_PARSE(app, argc, argv);
+  return run(options);
+}
