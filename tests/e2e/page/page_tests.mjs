@@ -225,7 +225,9 @@ export const kPageTests = [
     assert.deepEqual(await label_faults(page), []);
     await page.locator("body").press("?");
     await page.getByRole("dialog").waitFor();
-    await page.keyboard.press("Escape");
+    assert.deepEqual(await label_faults(page), []);
+    await page.getByRole("button", { name: "Close" }).click();
+    await page.getByRole("dialog").waitFor({ state: "hidden" });
     await page.goto(`${url}/jobs/${await done_job(url)}`);
     await state_is(page, "completed");
     await picture(page);

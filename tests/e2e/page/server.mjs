@@ -16,7 +16,7 @@ export class Daemon {
 
   async start() {
     if (!existsSync(this.program)) throw new Error(`${this.program} is not built`);
-    const options = ["--port", String(this.port), "--store", join(this.folder, "store")];
+    const options = ["--listen", `127.0.0.1:${this.port}`, "--store", join(this.folder, "store")];
     this.process = spawn(this.program, options, { stdio: ["ignore", "pipe", "pipe"] });
     this.ended = new Promise((resolve) => this.process.on("exit", resolve));
     const url = await new Promise((resolve, reject) => {
