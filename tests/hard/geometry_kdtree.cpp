@@ -1,0 +1,437 @@
+// K01, K02, K05, K09 (tree), K10, K11: meshes whose planes, copies and fans defeat splitting.
+#include "hard/support/hard_meshes.hpp"
+#include "hard/support/hits.hpp"
+#include "hard/support/report.hpp"
+
+namespace raykiln::hard {
+namespace {
+
+using render::build_stats;
+using test::build;
+
+Ray ray_from(const Vec3f& o, const Vec3f& d) {
+  Ray ray;
+  ray.o = o;
+  ray.d = d;
+  return ray;
+}
+
+// ---- K01: a wall of n x n quads in the plane axis = at, in a box of six quads ----
+
+struct Wall {
+  int axis = 0;
+  float at = 1.7F;
+  std::uint32_t n = 100;
+  float unit = 1.0F;  // the box is [-3 unit, 3 unit]^3
+};
+
+TestMesh walled_box(const Wall& wall) {
+  TestMesh mesh = test::box_room(1, 3.0F * wall.unit);
+  TestMesh sheet = test::coplanar_grid(wall.n, wall.axis, wall.at * wall.unit, 3.0F * wall.unit);
+  mesh.append(sheet);
+  return mesh;
+}
+
+Tally rays_at_wall(const Wall& wall, std::uint64_t n, std::uint64_t compare, std::uint64_t seed) {
+  const auto tree = build(walled_box(wall));
+  TestRandom random(seed);
+  return trace_and_compare(*tree, n, compare, [&] {
+    Vec3f d = random.direction();
+    if (!(d[wall.axis] > 0.0F)) d[wall.axis] = -d[wall.axis];
+    if (d[wall.axis] == 0.0F) d[wall.axis] = 1e-3F;
+    return ray_from(wall.unit * random.in_box(-1.0F, 1.0F), d);
+  });
+}
+
+TEST(K01_CoplanarWalls, HundredByHundredQuads) {
+  Row row("K01", "box [-3,3]^3, wall of 100 x 100 quads in x = float(1.7)",
+          "every ray hits; hits equal brute force");
+  const std::uint64_t n = trials(1'000'000, 10'000'000);
+  const Tally tally = rays_at_wall({}, n, trials(20'000, 1'000'000), 101);
+  row.never("misses", tally.rays - tally.hits, tally.rays);
+  row.never("differences from brute force", tally.mismatches, tally.compared);
+  EXPECT_EQ(tally.hits, tally.rays);
+  EXPECT_EQ(tally.mismatches, 0U);
+}
+
+TEST(K01_CoplanarWalls, RandomWalls) {
+  Row row("K01", "60 boxes of any size: random axis, position and grid of the wall",
+          "every ray hits; hits equal brute force");
+  TestRandom random(102);
+  Tally total;
+  for (int member = 0; member < 60; ++member) {
+    Wall wall;
+    wall.axis = member % 3;
+    wall.at = random.uniform(1.01F, 2.99F);
+    wall.n = std::array<std::uint32_t, 3>{1, 3, 9}[random.below(3)];
+    wall.unit = std::pow(10.0F, random.uniform(-6.0F, 6.0F));
+    const std::uint64_t n = trials(1'000'000, 10'000'000) / 60;
+    total += rays_at_wall(wall, n, n, 1000 + static_cast<std::uint64_t>(member));
+  }
+  row.never("misses", total.rays - total.hits, total.rays);
+  row.never("differences from brute force", total.mismatches, total.compared);
+  EXPECT_EQ(total.hits, total.rays);
+  EXPECT_EQ(total.mismatches, 0U);
+}
+
+// ---- K02: flat and line-shaped scenes ----
+
+// n triangles with edges up to `edge` in the plane axis = height + thickness * random.
+TestMesh flat_soup(std::uint32_t n, float edge, int axis, float height, float thickness,
+                   TestRandom& random) {
+  TestMesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    std::array<Vec3f, 3> p;
+    const Vec3f first = random.in_box(0.0F, 1.0F);
+    for (Vec3f& q : p) {
+      q = first + edge * random.in_box(-0.5F, 0.5F);
+      q[axis] = height + thickness * random.uniform();
+    }
+    mesh.add(p[0], p[1], p[2]);
+  }
+  return mesh;
+}
+
+// Through the plane, parallel to it at a distance, and inside of it.
+Ray ray_at_plane(TestRandom& random, int axis, float height, std::uint64_t kind) {
+  Ray ray = ray_from(random.in_box(-0.5F, 1.5F), random.direction());
+  switch (kind % 4) {
+    case 0: ray.d[axis] = 0.0F; break;
+    case 1:
+      ray.d[axis] = (random.bits() & 1) != 0 ? 0.0F : -0.0F;
+      ray.o[axis] = height;
+      break;
+    default: break;
+  }
+  return ray;
+}
+
+double build_seconds(const TestMesh& mesh, std::shared_ptr<const KdTree>* out = nullptr) {
+  double best = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const double start = cpu_seconds();
+    auto tree = build(mesh);
+    best = std::min(best, cpu_seconds() - start);
+    if (out != nullptr) *out = tree;
+  }
+  return best;
+}
+
+struct FlatResult {
+  Tally tally;
+  std::uint64_t in_plane_hits = 0;
+  double references = 0.0;  // a triangle
+  double seconds = 0.0;
+  bool budget_reached = false;
+};
+
+FlatResult check_flat(const TestMesh& mesh, int axis, float height, bool exactly_flat,
+                      std::uint64_t rays, std::uint64_t seed) {
+  FlatResult result;
+  std::shared_ptr<const KdTree> tree;
+  result.seconds = build_seconds(mesh, &tree);
+  const auto& stats = build_stats(*tree);
+  result.references =
+      static_cast<double>(stats.references) / static_cast<double>(stats.triangles);
+  result.budget_reached = stats.budget_reached;
+  TestRandom random(seed);
+  std::uint64_t kind = 0;
+  result.tally = trace_and_compare(*tree, rays, rays,
+                                   [&] { return ray_at_plane(random, axis, height, kind++); });
+  if (!exactly_flat) return result;
+  trace_batches(
+      *tree, rays, [&] { return ray_at_plane(random, axis, height, 1); },
+      [&](const auto&, const auto& hits) { result.in_plane_hits += test::count_hits(hits); });
+  return result;
+}
+
+TEST(K02_FlatScenes, SparseSheetBuildsLikeAnyOtherScene) {
+  Row row("K02", "(a) 1e4 triangles, edge 0.7/sqrt(N), in a plane across x, y or z",
+          "build <= 2x a 3-D scene; references <= 3N; hits equal brute force; none in the plane");
+  constexpr std::uint32_t kN = 10'000;
+  const double solid = build_seconds(test::soup(kN, 3));
+  double slowest = 0.0, most = 0.0;
+  Tally total;
+  std::uint64_t in_plane = 0;
+  TestRandom random(201);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float height : {0.0F, 0.7F, -12345.0F}) {
+      const auto mesh = flat_soup(kN, 0.007F, axis, height, 0.0F, random);
+      const FlatResult r = check_flat(mesh, axis, height, true, trials(4000, 40'000), random.bits());
+      slowest = std::max(slowest, r.seconds);
+      most = std::max(most, r.references);
+      total += r.tally;
+      in_plane += r.in_plane_hits;
+    }
+  }
+  row.measured("build time against 3-D", slowest / solid);
+  row.measured("references/N", most);
+  row.never("differences", total.mismatches, total.compared);
+  row.measured("hits in the plane", in_plane);
+  EXPECT_LE(slowest, 2.0 * solid);
+  EXPECT_LE(most, 3.0);
+  EXPECT_EQ(total.mismatches, 0U);
+  EXPECT_EQ(in_plane, 0U);
+}
+
+TEST(K02_FlatScenes, OverlappingSheetStopsAtTheBudget) {
+  Row row("K02", "(a2) 1e4 triangles, edge 0.05, overlapping in one plane",
+          "references within the budget, said when reached; hits equal brute force");
+  TestRandom random(202);
+  const auto mesh = flat_soup(10'000, 0.05F, 2, 0.0F, 0.0F, random);
+  const FlatResult r = check_flat(mesh, 2, 0.0F, true, trials(10'000, 100'000), 203);
+  row.measured("references/N", r.references);
+  row.measured("budget reached", r.budget_reached ? "yes" : "no");
+  row.never("differences", r.tally.mismatches, r.tally.compared);
+  EXPECT_LE(r.references, render::BuildParams{}.max_duplication);
+  EXPECT_TRUE(r.budget_reached);
+  EXPECT_EQ(r.tally.mismatches, 0U);
+  EXPECT_EQ(r.in_plane_hits, 0U);
+}
+
+TEST(K02_FlatScenes, AlmostFlat) {
+  Row row("K02", "(b) 1e4 triangles with z = s rand, s = 1e-30, 1e-38, 1e-45, 1e-12",
+          "build ends; hits equal brute force");
+  TestRandom random(204);
+  Tally total;
+  for (const float thickness : {1e-30F, 1e-38F, 1e-45F, 1e-12F}) {
+    const auto mesh = flat_soup(10'000, 0.007F, 2, 0.0F, thickness, random);
+    total += check_flat(mesh, 2, 0.0F, false, trials(4000, 40'000), random.bits()).tally;
+  }
+  row.never("differences", total.mismatches, total.compared);
+  row.never("hits", total.hits, total.rays);
+  EXPECT_EQ(total.mismatches, 0U);
+  EXPECT_GT(total.hits, 0U);
+}
+
+TEST(K02_FlatScenes, LineAndSingleTriangles) {
+  Row row("K02", "(c) 1e3 triangles on a line along x, y, z; (d) single triangles",
+          "build ends; all of (c) dropped and counted; hits equal brute force");
+  TestRandom random(205);
+  std::uint64_t dropped = 0;
+  Tally total;
+  for (int axis = 0; axis < 3; ++axis) {
+    TestMesh line;
+    for (int i = 0; i < 1000; ++i) {
+      std::array<Vec3f, 3> p{Vec3f(0.0F), Vec3f(0.0F), Vec3f(0.0F)};
+      for (Vec3f& q : p) q[axis] = random.uniform(-1.0F, 1.0F);
+      line.add(p[0], p[1], p[2]);
+    }
+    const auto tree = build(line);
+    dropped += build_stats(*tree).dropped_degenerate;
+    EXPECT_EQ(trace_and_compare(*tree, 1000, 1000, [&] {
+                return test::ray_to(random.in_box(-1.0F, 1.0F), line.positions[random.below(3000)]);
+              }).hits, 0U);
+  }
+  for (int member = 0; member < 1000; ++member) {
+    TestMesh one;
+    const float size = std::pow(10.0F, random.uniform(-15.0F, 15.0F));
+    one.add(size * random.in_box(-1.0F, 1.0F), size * random.in_box(-1.0F, 1.0F),
+            size * random.in_box(-1.0F, 1.0F));
+    const auto tree = build(one);
+    total += trace_and_compare(*tree, 100, 100, [&] {
+      return test::ray_to(size * random.in_box(-1.0F, 1.0F),
+                          test::point_on(random, one.corners(0)));
+    });
+  }
+  row.never("dropped", dropped, 3000);
+  row.never("single triangle: differences", total.mismatches, total.compared);
+  EXPECT_EQ(dropped, 3000U);
+  EXPECT_EQ(total.mismatches, 0U);
+  EXPECT_GT(total.hits, total.rays / 2);
+}
+
+// ---- K05: exact duplicates ----
+
+TEST(K05_ExactDuplicates, AloneInOneLeaf) {
+  Row row("K05", "2 to 1e4 copies of an oblique triangle, alone",
+          "one leaf of N references, nodes <= 64; the lowest id wins");
+  TestRandom random(501);
+  std::uint64_t most_nodes = 0, wrong = 0, rays = 0;
+  for (const std::size_t n : {2U, 100U, 10'000U, 10'000U}) {
+    TestMesh mesh = test::identical_triangles(n);
+    if (rays > 0) apply(random_similarity(random, 1.0), mesh);
+    const auto tree = build(mesh);
+    const auto& stats = build_stats(*tree);
+    most_nodes = std::max(most_nodes, stats.nodes);
+    EXPECT_EQ(stats.references, n);
+    EXPECT_EQ(stats.leaves - stats.empty_leaves, 1U);
+    const auto corners = mesh.corners(0);
+    const float size = render::length(corners[1] - corners[0]);
+    trace_batches(
+        *tree, trials(10'000, 100'000),
+        [&] {
+          return test::ray_to(corners[0] + size * random.in_box(-2.0F, 2.0F),
+                              0.98F * test::point_on(random, corners) +
+                                  0.02F * (corners[0] + corners[1] + corners[2]) / 3.0F);
+        },
+        [&](const auto&, const auto& hits) {
+          for (const Hit& hit : hits) wrong += hit.id != 0 ? 1U : 0U;
+          rays += hits.size();
+        });
+  }
+  row.measured("nodes", most_nodes);
+  row.never("hits that are not the lowest id", wrong, rays);
+  EXPECT_LE(most_nodes, 64U);
+  EXPECT_EQ(wrong, 0U);
+}
+
+TEST(K05_ExactDuplicates, InsideAMesh) {
+  Row row("K05", "1e4 copies of a triangle scattered through the list of a 10k mesh",
+          "build ends within the budget; the lowest id wins; hits equal brute force");
+  TestRandom random(502);
+  Tally total;
+  double most = 0.0;
+  for (const std::size_t n : {100U, 10'000U}) {
+    TestMesh mesh = test::terrain(71);
+    TestMesh copies = test::identical_triangles(n);
+    mesh.append(copies);
+    mesh = test::shuffled(mesh, random.bits());
+    const auto tree = build(mesh);
+    const auto& stats = build_stats(*tree);
+    most = std::max(most, static_cast<double>(stats.references) /
+                              static_cast<double>(stats.triangles));
+    const std::uint64_t rays = trials(10'000, 100'000);
+    const std::array<Vec3f, 3> corners{Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1)};
+    total += trace_and_compare(*tree, rays, rays, [&] {
+      return test::ray_to(random.in_box(-1.0F, 2.0F), test::point_on(random, corners));
+    });
+  }
+  row.measured("references/N", most);
+  row.never("differences", total.mismatches, total.compared);
+  EXPECT_LE(most, render::BuildParams{}.max_duplication);
+  EXPECT_EQ(total.mismatches, 0U);
+}
+
+// ---- K09: nothing to build ----
+
+TEST(K09_EmptyScene, TreeOfNothing) {
+  Row row("K09", "0 triangles; 1 degenerate triangle; 1 triangle; rays of every kind",
+          "build ends; nothing is hit where nothing is");
+  TestRandom random(901);
+  TestMesh nothing, point, one;
+  point.add(Vec3f(1.0F), Vec3f(1.0F), Vec3f(1.0F));
+  one.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const auto any_ray = [&] { return ray_from(random.in_box(-2.0F, 2.0F), random.direction()); };
+  std::uint64_t hits = 0;
+  for (const TestMesh* mesh : {&nothing, &point}) {
+    const auto tree = build(*mesh);
+    EXPECT_TRUE(render::bounds(*tree).empty());
+    hits += trace_and_compare(*tree, 10'000, 10'000, any_ray).hits;
+  }
+  const auto tree = build(one);
+  const Tally away = trace_and_compare(*tree, 10'000, 10'000, [&] {
+    return ray_from({random.uniform(), random.uniform(), 1.0F}, {0.0F, 0.0F, 1.0F});
+  });
+  row.measured("hits", hits + away.hits);
+  EXPECT_EQ(hits + away.hits, 0U);
+  EXPECT_EQ(away.mismatches, 0U);
+}
+
+// ---- K10: oblique sheets ----
+
+TEST(K10_ObliqueSheets, NoSplitPays) {
+  Row row("K10", "N = 50, 200, 1e4 parallel triangles (1+ig,0,0),(0,1+ig,0),(0,0,1+ig), g = 1e-3",
+          "image correct; the build's figures say that the tree gives no benefit (ratio 1)");
+  TestRandom random(1001);
+  Tally total;
+  for (const std::uint32_t n : {50U, 200U, 10'000U}) {
+    TestMesh mesh;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const float s = 1.0F + static_cast<float>(i) * 1e-3F;
+      mesh.add({s, 0, 0}, {0, s, 0}, {0, 0, s});
+    }
+    const auto tree = build(mesh);
+    const auto& stats = build_stats(*tree);
+    const double leaf_cost = tree->params.k_i * static_cast<double>(n);
+    row.measured("N " + std::to_string(n) + ": cost/leaf cost", stats.sah_cost / leaf_cost);
+    row.measured("nodes", stats.nodes);
+    EXPECT_LE(stats.sah_cost, leaf_cost * (1.0 + 1e-9));
+    EXPECT_GT(stats.sah_cost, 0.0);
+    const std::uint64_t rays = trials(10'000, 100'000);
+    total += trace_and_compare(*tree, rays, rays, [&] {
+      return ray_from(random.in_box(-0.5F, 2.0F), random.direction());
+    });
+  }
+  row.never("differences", total.mismatches, total.compared);
+  EXPECT_EQ(total.mismatches, 0U);
+  EXPECT_GT(total.hits, 1000U);
+}
+
+// ---- K11: fans ----
+
+// N triangles between the apex at 0 and a ring around -z.
+TestMesh cone_fan(std::uint32_t n, TestRandom& random) {
+  TestMesh mesh;
+  mesh.positions.push_back(Vec3f(0.0F));
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2.0 * std::numbers::pi * (i + 0.4 * static_cast<double>(random.uniform())) / n;
+    mesh.positions.emplace_back(Vec3d(std::cos(a), std::sin(a), -1.0));
+  }
+  for (std::uint32_t i = 0; i < n; ++i) mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+  return mesh;
+}
+
+TestMesh star(std::uint32_t n, TestRandom& random) {
+  TestMesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Vec3f a = random.direction();
+    mesh.add(Vec3f(0.0F), a, a + 0.01F * random.direction());
+  }
+  return mesh;
+}
+
+TEST(K11_Fan, RaysAtTheApexOfAClosedFan) {
+  Row row("K11", "cone fans of N = 200, 1600, 1e4 triangles, turned at random; rays at the apex",
+          "no leak; references/N <= 0.35 sqrt(N); hits equal brute force");
+  TestRandom random(1101);
+  Tally total;
+  double worst = 0.0;
+  const std::uint64_t all = trials(1'000'000, 10'000'000);
+  for (const auto& [n, share] : {std::pair{200U, 87U}, {1600U, 12U}, {10'000U, 1U}}) {
+    TestMesh mesh = cone_fan(n, random);
+    const Similarity turn = random_rotation(random);
+    apply(turn, mesh);
+    const auto tree = build(mesh);
+    const auto& stats = build_stats(*tree);
+    worst = std::max(worst, static_cast<double>(stats.references) / n / std::sqrt(n));
+    total += trace_and_compare(*tree, all * share / 100, 1000, [&] {
+      const float depth = std::pow(10.0F, random.uniform(-3.0F, 3.0F));
+      const float r = 0.7F * depth;
+      return test::ray_to(turn(Vec3f(random.uniform(-r, r) * 0.7F, random.uniform(-r, r) * 0.7F,
+                                     -depth)), Vec3f(0.0F));
+    });
+  }
+  row.never("leaks", total.rays - total.hits, total.rays);
+  row.measured("references/N/sqrt(N)", worst);
+  row.never("differences", total.mismatches, total.compared);
+  EXPECT_EQ(total.hits, total.rays);
+  EXPECT_LE(worst, 0.35);
+  EXPECT_EQ(total.mismatches, 0U);
+}
+
+TEST(K11_Fan, StarOfNeedles) {
+  Row row("K11", "stars of N = 200, 1600, 1e4 needles (0, a, a + 0.01 b), |a| = 1",
+          "references/N <= 0.35 sqrt(N); hits equal brute force");
+  TestRandom random(1102);
+  Tally total;
+  double worst = 0.0;
+  for (const std::uint32_t n : {200U, 1600U, 10'000U}) {
+    const TestMesh mesh = star(n, random);
+    const auto tree = build(mesh);
+    worst = std::max(worst, static_cast<double>(build_stats(*tree).references) / n / std::sqrt(n));
+    const std::uint64_t rays = trials(10'000, 100'000);
+    total += trace_and_compare(*tree, rays, rays, [&] {
+      return test::ray_to(random.in_box(-1.0F, 1.0F),
+                          test::point_on(random, mesh.corners(random.below(n))));
+    });
+  }
+  row.measured("references/N/sqrt(N)", worst);
+  row.never("differences", total.mismatches, total.compared);
+  EXPECT_LE(worst, 0.35);
+  EXPECT_EQ(total.mismatches, 0U);
+  EXPECT_GT(total.hits, total.rays / 2);
+}
+
+}  // namespace
+}  // namespace raykiln::hard
