@@ -1,6 +1,6 @@
 // A real raykilnd on a free port with a store that is thrown away.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -16,30 +16,24 @@ export class Daemon {
 
   async start() {
     if (!existsSync(this.program)) throw new Error(`${this.program} is not built`);
-    const ready = join(this.folder, "ready");
-    rmSync(ready, { force: true });
-    this.process = spawn(this.program, ["--listen", `127.0.0.1:${this.port}`,
-      "--store", join(this.folder, "store"), "--ready-file", ready], { stdio: ["ignore", "pipe", "pipe"] });
+    const options = ["--listen", `127.0.0.1:${this.port}`, "--store", join(this.folder, "store")];
+    this.process = spawn(this.program, options, { stdio: ["ignore", "pipe", "pipe"] });
     this.ended = new Promise((resolve) => this.process.on("exit", resolve));
-    for (const stream of [this.process.stdout, this.process.stderr]) {
-      stream.on("data", (bytes) => { this.log = (this.log + bytes).slice(-20_000); });
-    }
-    return this.ready(ready, Date.now() + kStartMs);
-  }
-
-  /** The address, once the daemon has written it. */
-  async ready(file, deadline) {
-    for (;;) {
-      const url = existsSync(file) ? readFileSync(file, "utf8").trim() : "";
-      if (url) {
-        this.port = Number(new URL(url).port);
-        return url;
-      }
-      if (this.process.exitCode !== null || Date.now() > deadline) {
-        throw new Error(`raykilnd is not ready (exit code ${this.process.exitCode}):\n${this.log}`);
-      }
-      await new Promise((resolve) => setTimeout(resolve, 20));
-    }
+    const url = await new Promise((resolve, reject) => {
+      const timer = setTimeout(() => reject(new Error(`raykilnd is silent:\n${this.log}`)), kStartMs);
+      const read = (bytes) => {
+        this.log = (this.log + bytes).slice(-20_000);
+        const found = /http:\/\/127\.0\.0\.1:(\d+)/.exec(this.log);
+        if (!found) return;
+        clearTimeout(timer);
+        this.port = Number(found[1]);
+        resolve(found[0]);
+      };
+      this.process.stdout.on("data", read);
+      this.process.stderr.on("data", read);
+      this.process.on("exit", (code) => reject(new Error(`raykilnd ended (${code}):\n${this.log}`)));
+    });
+    return url;
   }
 
   async stop() {

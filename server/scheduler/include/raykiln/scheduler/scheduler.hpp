@@ -21,7 +21,8 @@
 namespace raykiln::server {
 
 /// The answer to one call. Invoked exactly once, on a thread of the scheduler, never under a lock and
-/// never within the call itself: it must only post. After shutdown() the answer is "shutting_down".
+/// never within the call itself: it must only post. After shutdown() the answer is "shutting_down", given
+/// within the call.
 template <class T>
 using Reply = std::function<void(Result<T>)>;
 

@@ -1,8 +1,8 @@
 // Render threads of this process.
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <stop_token>
 
 #include "raykiln/accel/task_runner.hpp"
 #include "raykiln/base/config.hpp"
@@ -25,9 +25,9 @@ class LocalPool final : public Executor {
   /// Lets running tasks end, answers waiting ones with "worker_stopped", joins.
   void stop();
 
-  /// A runner for builds: closures run on the pool's threads and on the calling one, which never
-  /// waits for a closure that nobody has begun, so that nested calls cannot deadlock. At most
-  /// concurrency() closures of all runners run on pool threads, before tiles.
+  /// A runner for builds: closures run on the calling thread and on pool threads that have no tile to
+  /// render. A caller never waits for a closure that nobody has begun, so that nested calls cannot
+  /// deadlock. Runs on the calling thread alone after stop().
   [[nodiscard]] std::unique_ptr<render::TaskRunner> task_runner(
       std::function<void(double)> progress, std::function<bool()> stop_requested);
 

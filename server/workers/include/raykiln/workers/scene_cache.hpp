@@ -1,10 +1,12 @@
 // Scenes and trees in memory: built once, shared, bounded.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "raykiln/base/clock.hpp"
 #include "raykiln/base/config.hpp"
@@ -28,13 +30,15 @@ struct ReadyScene {
   std::shared_ptr<const render::Scene> scene;
   std::shared_ptr<const render::PreparedScene> prepared;
   TreeReport tree;
+  bool built_now = false;  ///< false: the tree was there already
+  std::string tree_key{};
 };
 
 enum class CacheState { kAbsent, kBuilding, kReady };
 [[nodiscard]] std::string_view name(CacheState state);  ///< "absent", "building", "ready"
 
-/// SHA-256 over positions, indices and opaque flags: equal for scenes that differ in camera, lights or
-/// other properties of materials.
+/// SHA-256 over all that the tree is built from (positions, indices, opacity flags where the builder is
+/// given any): equal for scenes that differ in camera, lights or materials.
 [[nodiscard]] std::string geometry_digest(const render::Scene& scene);
 
 /// While a ticket lives its holder waits for the scene; a build that nobody waits for is stopped.
@@ -64,14 +68,16 @@ class SceneCache {
   SceneCache(const WorkerSettings& settings, Parts parts);
   ~SceneCache();  ///< stops all flights, joins
 
-  /// Calls `done` once, on another thread, unless the ticket is dropped before; `progress` rarely,
-  /// before `done`. Both must only post, and must own what they touch: a call that is under way when
-  /// the ticket is dropped still ends.
+  /// Calls `done` once, within this call when the scene is ready, else on another thread, unless the
+  /// ticket is dropped before; `progress` rarely, before `done`. Both must only post, and must own
+  /// what they touch: a call that is under way when the ticket is dropped still ends.
   [[nodiscard]] std::unique_ptr<PrepareTicket> prepare(
       const std::string& scene_id, std::function<void(PrepareProgress)> progress,
       std::function<void(Result<ReadyScene>)> done);
 
   [[nodiscard]] CacheState state(const std::string& scene_id) const;
+  /// How far the preparation is; kNone when there is none.
+  [[nodiscard]] PrepareProgress progress(const std::string& scene_id) const;
   /// Statistics of the scene's tree if it was built by this process.
   [[nodiscard]] std::optional<TreeReport> tree_report(const std::string& scene_id) const;
   /// Drops what is kept of a deleted scene.

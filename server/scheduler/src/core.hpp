@@ -1,0 +1,164 @@
+// The inside of the scheduler: everything here happens on its strand unless said otherwise.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "raykiln/base/serial_thread.hpp"
+#include "raykiln/jobs/fair_share.hpp"
+#include "raykiln/jobs/tile_plan.hpp"
+#include "raykiln/scheduler/scheduler.hpp"
+
+namespace raykiln::server {
+
+/// A job that has not ended.
+struct LiveJob {
+  JobSnapshot snapshot;
+  std::string idempotency_key, request_digest;
+  std::uint64_t order = 0;  ///< of submission
+
+  // While active.
+  std::unique_ptr<PrepareTicket> ticket;
+  ReadyScene scene;
+  render::RenderSettings settings;
+  std::vector<render::SampleBlock> blocks;
+  std::optional<render::Film> film;
+  std::optional<TilePlan> plan;
+  std::stop_source stop;
+  int in_flight = 0;
+  SteadyTime active_since{}, render_since{};
+
+  // Publication.
+  bool new_samples = false;        ///< since the last revision
+  bool publish_planned = false;
+  SteadyTime published_at{};
+
+  // On its way to a final state.
+  std::optional<JobEvent> ending{};
+  std::optional<Error> ending_error{};
+  bool archiving = false;
+};
+
+class Scheduler::Core {
+ public:
+  Core(const Config& config, const Parts& parts);
+
+  /// Runs `step` on the strand; from any thread. False when it has stopped.
+  bool post(std::function<void()> step);
+
+  // core_jobs.cpp
+  void submit(SubmitJob submission, const Reply<SubmittedJob>& reply);
+  void get(const JobId& id, const Reply<JobSnapshot>& reply);
+  void list(const ListJobs& query, const Reply<JobPage>& reply);
+  void cancel(const JobId& id, const Reply<JobSnapshot>& reply);
+  void watch(const JobId& id, std::function<void()> wake,
+             const Reply<std::unique_ptr<Subscription>>& reply);
+  void status(const Reply<SchedulerStatus>& reply);
+
+  // core_images.cpp
+  void image(const JobId& id, const std::string& layer, const Reply<JobImagePtr>& reply);
+
+  // core_scenes.cpp
+  void add_scene(std::shared_ptr<std::unique_ptr<SceneUpload>> upload,
+                 const AddSceneOptions& options, const Reply<AddedScene>& reply);
+  void scene(const std::string& id, const Reply<SceneView>& reply);
+  void scenes(std::size_t offset, std::size_t limit, const Reply<std::vector<SceneView>>& reply);
+  void delete_scene(const std::string& id, const Reply<std::monostate>& reply);
+  void prepare_scene(const std::string& id, const Reply<SceneView>& reply);
+
+  // core_life.cpp
+  void restore();
+  void shutdown(std::chrono::milliseconds drain);  ///< not on the strand
+
+ private:
+  // core_jobs.cpp
+  [[nodiscard]] Result<SubmittedJob> try_submit(SubmitJob submission);
+  [[nodiscard]] Result<std::optional<SubmittedJob>> earlier_submission(const SubmitJob& submission);
+  [[nodiscard]] Result<JobSnapshot> snapshot_of(const JobId& id);
+  [[nodiscard]] Status check_resources(const JobRequest& request);
+  void enqueue(LiveJob& job);
+
+  // core_run.cpp
+  void pump();
+  void start_jobs();
+  bool start_next_job();
+  void start_preparing(LiveJob& job);
+  void prepared(const JobId& id, Result<ReadyScene> scene);
+  void start_rendering(LiveJob& job, ReadyScene scene);
+  void dispatch();
+  void dispatch_one(LiveJob& job);
+  void finished_task(TileOutcome outcome);
+  void merge_outcome(LiveJob& job, const TileOutcome& outcome);
+  void count_idle(LiveJob& job, const TileOutcome& outcome);
+  void task_failed(LiveJob& job, const TileOutcome& outcome);
+  void begin_ending(LiveJob& job, JobEvent event, std::optional<Error> error);
+  void archive_if_drained(LiveJob& job);
+  void archived(const JobId& id, const Status& saved, JobImagePtr image);
+
+  // core_publish.cpp
+  void transition(LiveJob& job, JobEvent event, std::optional<Error> error = std::nullopt);
+  void publish(LiveJob& job);
+  void publish_soon(LiveJob& job);
+  void refresh(LiveJob& job);
+  void save(const LiveJob& job);
+  void leave(LiveJob& job);
+  void tell_queue_positions();
+
+  // core_images.cpp
+  [[nodiscard]] JobImagePtr resolve(LiveJob& job);
+  void remember(JobImagePtr image);
+  [[nodiscard]] JobImagePtr remembered(const JobId& id, std::uint64_t revision) const;
+  void load_image(const JobSnapshot& job, const Reply<JobImagePtr>& reply);
+
+  // core_scenes.cpp
+  [[nodiscard]] SceneView view(SceneRecord record) const;
+  void import_scene(std::shared_ptr<std::unique_ptr<SceneUpload>> upload,
+                    const AddSceneOptions& options, const Reply<AddedScene>& reply);
+
+  [[nodiscard]] LiveJob* find(const JobId& id);
+
+  const Config config_;
+  Parts parts_;
+  EventHub hub_;
+  std::map<JobId, std::unique_ptr<LiveJob>> live_;
+  std::vector<JobId> queue_;  ///< in the order in which jobs start
+  FairShare shares_;
+  std::vector<JobImagePtr> images_;  ///< the most recent last
+  std::map<std::string, std::unique_ptr<PrepareTicket>> prepares_;  ///< by scene, asked for by clients
+  std::map<int, SteadyTime> worker_free_since_;
+  std::size_t active_ = 0;
+  std::uint64_t active_film_bytes_ = 0;
+  int tasks_in_flight_ = 0;
+  std::size_t pending_imports_ = 0;
+  std::uint64_t next_order_ = 1;
+  double mean_job_seconds_ = 0.0;
+  bool accepting_ = true;
+  bool halted_ = false;  ///< nothing is merged or stored any more
+
+  Gauge& queued_gauge_;
+  Gauge& active_gauge_;
+  Counter& rays_;
+  Counter& non_finite_;
+  Counter& tasks_;
+  Histogram& task_seconds_;
+
+  std::mutex idle_mutex_;
+  std::condition_variable idle_;
+  std::size_t busy_ = 0;  ///< guarded by idle_mutex_: active jobs + tasks in flight
+  void note_busy();
+
+  // Last: their threads use what is above. The disk's and the intake's threads post to the strand.
+  SerialThread strand_;
+  SerialThread disk_;
+  SerialThread intake_;
+};
+
+}  // namespace raykiln::server

@@ -1,0 +1,76 @@
+// Pictures on demand.
+#include <algorithm>
+
+#include "core.hpp"
+
+namespace raykiln::server {
+namespace {
+
+std::shared_ptr<JobImage> framed(const JobSnapshot& job) {
+  auto image = std::make_shared<JobImage>();
+  image->job = job.id;
+  image->revision = job.image_revision;
+  image->is_final = is_final(job.state);
+  image->scene = job.request.scene;
+  image->request = job.request;
+  image->samples_per_pixel = job.progress.samples_per_pixel;
+  image->render_seconds = job.statistics.render_seconds;
+  return image;
+}
+
+Error image_not_ready() {
+  return {ErrorKind::kNotFound, "image_not_ready", "there is no picture yet", "", 1};
+}
+
+}  // namespace
+
+JobImagePtr Scheduler::Core::resolve(LiveJob& job) {
+  const SteadyTime begin = parts_.clock.steady();
+  auto image = framed(job.snapshot);
+  image->image = job.film->resolve();
+  job.snapshot.statistics.publish_seconds += seconds_between(begin, parts_.clock.steady());
+  return image;
+}
+
+JobImagePtr Scheduler::Core::remembered(const JobId& id, std::uint64_t revision) const {
+  for (const JobImagePtr& image : images_) {
+    if (image->job == id && image->revision == revision) return image;
+  }
+  return nullptr;
+}
+
+void Scheduler::Core::remember(JobImagePtr image) {
+  std::erase_if(images_, [&](const JobImagePtr& old) { return old->job == image->job; });
+  images_.push_back(std::move(image));
+  if (images_.size() > config_.scheduler.max_cached_images) images_.erase(images_.begin());
+}
+
+void Scheduler::Core::image(const JobId& id, const std::string& layer,
+                            const Reply<JobImagePtr>& reply) {
+  if (layer != "beauty") {
+    return reply(Error{ErrorKind::kInvalid, "invalid_parameter", "there is no such layer", "layer"});
+  }
+  auto snapshot = snapshot_of(id);
+  if (!snapshot) return reply(snapshot.error());
+  if (snapshot->image_revision == 0) return reply(image_not_ready());
+  if (auto known = remembered(id, snapshot->image_revision)) return reply(std::move(known));
+  LiveJob* job = find(id);
+  if (job == nullptr) return load_image(*snapshot, reply);
+  if (!job->film) return reply(image_not_ready());
+  JobImagePtr fresh = resolve(*job);
+  remember(fresh);
+  reply(std::move(fresh));
+}
+
+void Scheduler::Core::load_image(const JobSnapshot& job, const Reply<JobImagePtr>& reply) {
+  disk_.post([this, job, reply] {
+    auto stored = parts_.store.image(job.id);
+    if (!stored) return reply(stored.error());
+    auto image = framed(job);
+    image->image = render::Image{stored->width, stored->height, std::move(stored->rgb)};
+    strand_.post([this, image] { remember(image); });
+    reply(JobImagePtr(image));
+  });
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,295 @@
+// From the queue to the last sample.
+#include <algorithm>
+#include <limits>
+#include <new>
+
+#include "core.hpp"
+#include "render_inputs.hpp"
+
+namespace raykiln::server {
+namespace {
+
+TaskLength task_length(const SchedulerSettings& settings) {
+  TaskLength length;
+  length.low_seconds = settings.task_seconds_low;
+  length.target_seconds = settings.task_seconds_target;
+  length.high_seconds = settings.task_seconds_high;
+  return length;
+}
+
+std::vector<std::uint32_t> samples_of(const std::vector<render::SampleBlock>& blocks) {
+  std::vector<std::uint32_t> samples;
+  samples.reserve(blocks.size());
+  for (const auto& block : blocks) samples.push_back(static_cast<std::uint32_t>(block.count));
+  return samples;
+}
+
+void add_counts(JobStatistics& to, const render::TileResult& result) {
+  constexpr std::size_t kMaxLocated = 16;
+  to.paths += result.stats.paths;
+  to.camera_rays += result.stats.camera_rays;
+  to.bounce_rays += result.stats.bounce_rays;
+  to.shadow_rays += result.stats.shadow_rays;
+  to.non_finite += result.stats.non_finite;
+  to.negative += result.stats.negative;
+  to.truncated += result.stats.truncated;
+  for (const render::BadSample& bad : result.bad_samples) {
+    if (to.bad_samples.size() < kMaxLocated) to.bad_samples.push_back({bad.x, bad.y, bad.sample});
+  }
+}
+
+std::uint64_t rays_in(const render::TileResult& r) {
+  return r.stats.camera_rays + r.stats.bounce_rays + r.stats.shadow_rays;
+}
+
+}  // namespace
+
+void Scheduler::Core::pump() {
+  if (!halted_) {
+    start_jobs();
+    dispatch();
+  }
+  note_busy();
+}
+
+void Scheduler::Core::start_jobs() {
+  bool started = false;
+  while (accepting_ && active_ < config_.scheduler.max_active_jobs && start_next_job()) {
+    started = true;
+  }
+  if (started) tell_queue_positions();
+}
+
+/// False when the first job in the queue has to wait. Those behind it wait too, so that a large film
+/// is not overtaken for ever.
+bool Scheduler::Core::start_next_job() {
+  if (queue_.empty()) return false;
+  LiveJob& job = *find(queue_.front());
+  const std::uint64_t bytes =
+      render::film_bytes(job.snapshot.request.width, job.snapshot.request.height);
+  if (active_ > 0 && active_film_bytes_ + bytes > config_.scheduler.max_film_bytes) return false;
+  ++active_;
+  active_film_bytes_ += bytes;
+  active_gauge_.set(static_cast<double>(active_));
+  job.snapshot.statistics.film_bytes = bytes;
+  start_preparing(job);
+  return true;
+}
+
+void Scheduler::Core::start_preparing(LiveJob& job) {
+  const JobId id = job.snapshot.id;
+  job.active_since = parts_.clock.steady();
+  job.snapshot.started = parts_.clock.wall();
+  job.snapshot.prepare = {PrepareStage::kWaiting, 0.0};
+  transition(job, JobEvent::kStart);
+  job.ticket = parts_.cache.prepare(
+      job.snapshot.request.scene,
+      [this, id](PrepareProgress progress) {
+        post([this, id, progress] {
+          LiveJob* waiting = find(id);
+          if (waiting == nullptr || waiting->snapshot.state != JobState::kPreparing) return;
+          waiting->snapshot.prepare = progress;
+          publish_soon(*waiting);
+        });
+      },
+      [this, id](Result<ReadyScene> scene) {
+        post([this, id, ready = std::move(scene)]() mutable { prepared(id, std::move(ready)); });
+      });
+}
+
+void Scheduler::Core::prepared(const JobId& id, Result<ReadyScene> scene) {
+  LiveJob* job = find(id);
+  if (job == nullptr || job->snapshot.state != JobState::kPreparing || halted_) return;
+  job->ticket.reset();
+  if (!scene) {
+    transition(*job, JobEvent::kFail, scene.error());
+    return pump();
+  }
+  try {
+    start_rendering(*job, std::move(*scene));
+  } catch (const std::bad_alloc&) {
+    job->film.reset();
+    job->plan.reset();
+    transition(*job, JobEvent::kFail,
+               Error{ErrorKind::kInternal, "render_failed", "no memory for the film", ""});
+  }
+  pump();
+}
+
+void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
+  JobSnapshot& s = job.snapshot;
+  auto settings = render_settings(s.request, *scene.scene);
+  if (!settings) return transition(job, JobEvent::kFail, settings.error());
+  job.settings = *settings;
+  s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
+  job.scene = std::move(scene);
+  job.blocks = render::blocks_for(s.request.stop.samples);
+  job.film.emplace(s.request.width, s.request.height);
+  job.plan.emplace(s.request.width, s.request.height, s.request.tile, samples_of(job.blocks),
+                   task_length(config_.scheduler));
+  job.render_since = parts_.clock.steady();
+  s.statistics.prepare_seconds = seconds_between(job.active_since, job.render_since);
+  s.prepare = {};
+  transition(job, JobEvent::kPrepared);
+  shares_.join(s.id, s.request.priority);
+}
+
+/// Keeps as many tasks waiting as run, so that no worker waits for this strand.
+void Scheduler::Core::dispatch() {
+  const int most = 2 * parts_.executor.concurrency() + 1;
+  while (tasks_in_flight_ < most) {
+    const auto id = shares_.pick([this](const JobId& candidate) {
+      const LiveJob* job = find(candidate);
+      return job != nullptr && !job->ending && job->plan && job->plan->has_work();
+    });
+    if (!id) return;
+    dispatch_one(*find(*id));
+  }
+}
+
+void Scheduler::Core::dispatch_one(LiveJob& job) {
+  auto item = job.plan->next();
+  if (!item) return;
+  shares_.charge(job.snapshot.id, job.plan->expected_seconds(*item));
+  TileTask task;
+  task.job = job.snapshot.id;
+  task.scene = job.scene.prepared;
+  task.settings = job.settings;
+  task.blocks.assign(job.blocks.begin() + static_cast<std::ptrdiff_t>(item->first_block),
+                     job.blocks.begin() + static_cast<std::ptrdiff_t>(item->end_block));
+  task.item = std::move(*item);
+  task.stop = job.stop.get_token();
+  ++tasks_in_flight_;
+  ++job.in_flight;
+  parts_.executor.start(std::move(task), [this](TileOutcome outcome) {
+    post([this, held = std::move(outcome)]() mutable { finished_task(std::move(held)); });
+  });
+}
+
+/// Time of a worker before this task that it could have spent on this job.
+void Scheduler::Core::count_idle(LiveJob& job, const TileOutcome& outcome) {
+  const SteadyTime from = std::max(outcome.free_since, job.render_since);
+  const double idle = seconds_between(from, outcome.begun);
+  if (idle > 0.0) job.snapshot.statistics.idle_seconds += idle;
+  worker_free_since_[outcome.worker] = outcome.ended;
+}
+
+void Scheduler::Core::finished_task(TileOutcome outcome) {
+  --tasks_in_flight_;
+  LiveJob* job = find(outcome.job);
+  if (job != nullptr && !halted_) {
+    --job->in_flight;
+    if (outcome.begun != SteadyTime{}) count_idle(*job, outcome);
+    job->snapshot.statistics.worker_seconds += outcome.seconds;
+    if (job->ending) {
+      archive_if_drained(*job);
+    } else if (outcome.error || outcome.stopped) {
+      task_failed(*job, outcome);
+    } else {
+      merge_outcome(*job, outcome);
+    }
+  }
+  pump();
+}
+
+void Scheduler::Core::merge_outcome(LiveJob& job, const TileOutcome& outcome) {
+  if (!job.plan->in_flight(outcome.item)) return;  // late or twice: it is in the film already
+  JobStatistics& statistics = job.snapshot.statistics;
+  const SteadyTime begin = parts_.clock.steady();
+  shares_.charge(job.snapshot.id, outcome.seconds - job.plan->expected_seconds(outcome.item));
+  for (const render::TileResult& result : outcome.results) {
+    render::merge(*job.film, result);
+    add_counts(statistics, result);
+    rays_.add(static_cast<double>(rays_in(result)));
+    non_finite_.add(static_cast<double>(result.stats.non_finite));
+  }
+  (void)job.plan->merged(outcome.item, outcome.seconds);
+  ++statistics.tasks;
+  tasks_.add();
+  task_seconds_.observe(outcome.seconds);
+  job.new_samples = true;
+  statistics.merge_seconds += seconds_between(begin, parts_.clock.steady());
+  if (!job.plan->done()) return publish_soon(job);
+  begin_ending(job, JobEvent::kRendered, std::nullopt);
+}
+
+void Scheduler::Core::task_failed(LiveJob& job, const TileOutcome& outcome) {
+  const Error reason = outcome.error.value_or(
+      Error{ErrorKind::kInternal, "render_failed", "a worker stopped without being asked", ""});
+  parts_.log.warn("task_failed", {{"job", outcome.job},
+                                  {"attempt", outcome.item.attempt},
+                                  {"why", reason.message}});
+  if (outcome.item.attempt < config_.scheduler.max_attempts) {
+    ++job.snapshot.statistics.retried_tasks;
+    (void)job.plan->failed(outcome.item);
+    return;
+  }
+  begin_ending(job, JobEvent::kFail,
+               Error{ErrorKind::kInternal, "render_failed",
+                     reason.message + " (after " + std::to_string(outcome.item.attempt) +
+                         " attempts)",
+                     ""});
+}
+
+/// From here on nothing is merged. The state follows when no task is in flight and the picture stored.
+void Scheduler::Core::begin_ending(LiveJob& job, JobEvent event, std::optional<Error> error) {
+  refresh(job);
+  if (event == JobEvent::kRendered && live_.size() == 1) {
+    // Workers that had nothing left to do while the last tasks ran.
+    const SteadyTime now = parts_.clock.steady();
+    for (const auto& entry : worker_free_since_) {
+      const double idle = seconds_between(std::max(entry.second, job.render_since), now);
+      if (idle > 0.0) job.snapshot.statistics.idle_seconds += idle;
+    }
+  }
+  job.ending = event;
+  job.ending_error = std::move(error);
+  job.stop.request_stop();
+  job.plan->abandon();
+  archive_if_drained(job);
+}
+
+void Scheduler::Core::archive_if_drained(LiveJob& job) {
+  if (job.in_flight > 0 || job.archiving) return;
+  job.archiving = true;
+  const JobId id = job.snapshot.id;
+  if (job.snapshot.progress.samples_done == 0) return archived(id, success(), nullptr);
+  JobImagePtr image = resolve(job);
+  disk_.post([this, id, image] {
+    Status saved = success();
+    try {
+      const auto& picture = image->image;
+      saved = parts_.store.put_image(id, {picture.width, picture.height, picture.rgb});
+    } catch (const std::exception& fault) {
+      saved = Error{ErrorKind::kInternal, "internal", fault.what(), ""};
+    }
+    post([this, id, saved, image] { archived(id, saved, image); });
+  });
+}
+
+void Scheduler::Core::archived(const JobId& id, const Status& saved, JobImagePtr image) {
+  LiveJob* job = find(id);
+  if (job == nullptr) return;
+  JobEvent event = *job->ending;
+  auto error = std::move(job->ending_error);
+  if (!saved) {
+    parts_.log.error("image_not_stored", {{"job", id}, {"why", saved.error().message}});
+    // A picture that would be gone after a restart is not a completed job.
+    if (event == JobEvent::kRendered) {
+      event = JobEvent::kFail;
+      error = saved.error();
+    }
+  }
+  if (image) {
+    auto last = std::make_shared<JobImage>(*image);
+    last->revision = job->snapshot.revision + 1;
+    last->is_final = true;
+    last->samples_per_pixel = job->snapshot.progress.samples_per_pixel;
+    last->render_seconds = job->snapshot.statistics.render_seconds;
+    remember(std::move(last));
+  }
+  transition(*job, event, std::move(error));
+  pump();
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,88 @@
+#include "render_inputs.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace raykiln::server {
+namespace {
+
+Error no_such_camera(const std::string& what) {
+  return {ErrorKind::kInvalid, "invalid_request", "the scene has no camera " + what, "/camera"};
+}
+
+render::Vec3d vec(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
+
+/// In double up to the last step: eye and origin may be large and close together.
+render::Camera camera_of(const OwnCamera& own, const render::Scene& scene) {
+  const render::Vec3d forward = render::normalize(vec(own.look_at) - vec(own.eye));
+  const render::Vec3d right =
+      render::normalize(render::cross(forward, render::normalize(vec(own.up))));
+  render::Camera camera;
+  camera.name = "own";
+  camera.eye = render::Vec3f(vec(own.eye) - scene.origin);
+  camera.right = render::Vec3f(right);
+  camera.up = render::Vec3f(render::cross(right, forward));
+  camera.forward = render::Vec3f(forward);
+  camera.fov_y_rad = static_cast<float>(own.fov_deg * std::numbers::pi / 180.0);
+  return camera;
+}
+
+std::optional<int> index_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<int>(found - names.begin());
+}
+
+std::vector<std::string> camera_names(const render::Scene& scene) {
+  std::vector<std::string> names;
+  for (const render::Camera& camera : scene.cameras) names.push_back(camera.name);
+  return names;
+}
+
+Result<int> camera_index(const CameraChoice& choice, const std::vector<std::string>& names) {
+  if (const auto* index = std::get_if<int>(&choice)) {
+    if (*index >= 0 && static_cast<std::size_t>(*index) < names.size()) return *index;
+    return no_such_camera(std::to_string(*index));
+  }
+  if (const auto* name = std::get_if<std::string>(&choice)) {
+    if (const auto index = index_of(names, *name)) return *index;
+    return no_such_camera("of this name");
+  }
+  return 0;  // a camera of the user's own: the index is not used
+}
+
+}  // namespace
+
+Status check_camera(const CameraChoice& choice, const SceneReport& report) {
+  if (auto index = camera_index(choice, report.cameras); !index) return index.error();
+  return success();
+}
+
+Result<render::RenderSettings> render_settings(const JobRequest& request,
+                                               const render::Scene& scene) {
+  const auto index = camera_index(request.camera, camera_names(scene));
+  if (!index) return index.error();
+  render::RenderSettings settings;
+  settings.width = request.width;
+  settings.height = request.height;
+  settings.camera = *index;
+  if (const auto* own = std::get_if<OwnCamera>(&request.camera)) {
+    settings.own_camera = camera_of(*own, scene);
+  }
+  settings.light_model = render::LightModel::kSeed;
+  settings.max_depth = request.max_depth;
+  settings.branches = request.branches;
+  settings.seed = request.seed;
+  settings.pixel_mode = request.pixel_mode == PixelMode::kRandom ? render::PixelMode::kRandom
+                                                                 : render::PixelMode::kCentre;
+  settings.direction_sampling = request.direction_sampling == DirectionSampling::kBsdf
+                                    ? render::DirectionSampling::kBsdf
+                                    : render::DirectionSampling::kUniformSphere;
+  settings.emitter_sampling = request.emitter_sampling;
+  if (const auto wrong = render::settings_error(settings, scene)) {
+    return Error{ErrorKind::kInvalid, "invalid_request", *wrong, ""};
+  }
+  return settings;
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,18 @@
+// From a job's request to what the renderer takes.
+#pragma once
+
+#include "raykiln/base/result.hpp"
+#include "raykiln/jobs/job_request.hpp"
+#include "raykiln/render/render.hpp"
+#include "raykiln/workers/scene_report.hpp"
+
+namespace raykiln::server {
+
+/// Whether the scene has the camera that is asked for ("invalid_request" at "/camera").
+[[nodiscard]] Status check_camera(const CameraChoice& choice, const SceneReport& report);
+
+/// Precondition: validate(request) is success. The camera is looked up in the scene.
+[[nodiscard]] Result<render::RenderSettings> render_settings(const JobRequest& request,
+                                                             const render::Scene& scene);
+
+}  // namespace raykiln::server

@@ -1,0 +1,247 @@
+#include "cache_state.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+namespace raykiln::server {
+namespace {
+
+using render::BuildParams;
+
+std::uint64_t bytes_of(const render::Scene& scene) {
+  const auto& mesh = scene.mesh;
+  return sizeof(scene) + mesh.positions.size() * sizeof(render::Vec3f) +
+         mesh.triangles.size() * sizeof(mesh.triangles[0]) +
+         mesh.material_ids.size() * sizeof(mesh.material_ids[0]) +
+         mesh.normals.size() * sizeof(render::Vec3f) +
+         mesh.corner_normals.size() * sizeof(mesh.corner_normals[0]) +
+         scene.materials.size() * sizeof(render::Material) +
+         scene.point_lights.size() * sizeof(render::PointLight);
+}
+
+std::string tree_key(const render::Scene& scene, const BuildParams& p) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%d %a %a %a %a %d %d", render::kKdTreeVersion, p.k_t, p.k_i,
+                p.empty_factor, p.max_duplication, p.max_depth, p.leaf_width);
+  return "tree " + geometry_digest(scene) + ' ' + text;
+}
+
+std::string scene_key(const std::string& scene_id) { return "scene " + scene_id; }
+
+Error stopped() { return {ErrorKind::kUnavailable, "import_stopped", "nobody waits any more", ""}; }
+
+class Ticket final : public PrepareTicket {
+ public:
+  explicit Ticket(std::function<void()> drop) : drop_(std::move(drop)) {}
+  ~Ticket() override { drop_(); }
+  Ticket(const Ticket&) = delete;
+  Ticket& operator=(const Ticket&) = delete;
+
+ private:
+  std::function<void()> drop_;
+};
+
+}  // namespace
+
+SceneCache::State::State(const WorkerSettings& settings, Parts parts)
+    : kept(settings.scene_cache_bytes),
+      parts_(std::move(parts)),
+      builds_(parts_.metrics.counter("raykiln_tree_builds_total", "kd-trees that were built")),
+      imports_(parts_.metrics.counter("raykiln_scene_imports_total", "scenes read for rendering")),
+      hits_(parts_.metrics.counter("raykiln_scene_cache_hits_total", "scenes found ready")),
+      bytes_(parts_.metrics.gauge("raykiln_scene_cache_bytes", "scenes and trees kept in memory")) {
+  if (!parts_.build) {
+    parts_.build = [](const render::Scene& scene, render::TaskRunner& runner) {
+      return render::build_scene_tree(scene, BuildParams{}, runner);
+    };
+  }
+  for (int i = 0; i < std::max(1, settings.preparing_threads); ++i) {
+    threads_.emplace_back([this] { work(); });
+  }
+}
+
+void SceneCache::State::stop() {
+  {
+    const std::scoped_lock lock(mutex);
+    stopping_ = true;
+    for (const auto& entry : flights) entry.second->stop();
+  }
+  wake_.notify_all();
+  tree_ended_.notify_all();
+  for (auto& thread : threads_) thread.join();
+}
+
+std::optional<ReadyScene> SceneCache::State::ready(const std::string& scene_id) {
+  auto found = kept.use(scene_key(scene_id));
+  if (!found) return std::nullopt;
+  ReadyScene scene = std::get<ReadyScene>(*found);
+  // The tree after the scene: it is dropped last, so that its bytes stay counted while a scene that
+  // is kept refers to it.
+  (void)kept.use(scene.tree_key);
+  scene.built_now = false;
+  return scene;
+}
+
+std::unique_ptr<PrepareTicket> SceneCache::State::prepare(const std::shared_ptr<State>& self,
+                                                          const std::string& scene_id,
+                                                          Flight::Waiter waiter) {
+  std::unique_lock lock(mutex);
+  if (auto scene = ready(scene_id)) {
+    lock.unlock();
+    hits_.add();
+    waiter.done(std::move(*scene));
+    return std::make_unique<Ticket>([] {});
+  }
+  auto& flight = flights[scene_id];
+  auto seat = flight ? flight->join(waiter) : std::nullopt;
+  if (!seat) {
+    flight = std::make_shared<Flight>(scene_id);
+    seat = flight->join(waiter);
+    queue_.push_back(flight);
+    wake_.notify_one();
+  }
+  return std::make_unique<Ticket>(
+      [self, held = flight, id = *seat] { self->drop(held, id); });
+}
+
+void SceneCache::State::drop(const std::shared_ptr<Flight>& flight, std::uint64_t waiter) {
+  if (!flight->leave(waiter)) return;
+  const std::scoped_lock lock(mutex);
+  const auto found = flights.find(flight->scene_id);
+  if (found != flights.end() && found->second == flight) flights.erase(found);
+  tree_ended_.notify_all();  // it may be waiting for another's build
+}
+
+void SceneCache::State::work() {
+  while (true) {
+    std::shared_ptr<Flight> flight;
+    {
+      std::unique_lock lock(mutex);
+      wake_.wait(lock, [&] { return stopping_ || !queue_.empty(); });
+      if (stopping_) return;
+      flight = std::move(queue_.front());
+      queue_.pop_front();
+    }
+    const Result<ReadyScene> result = flight->wanted() ? guarded_fly(flight) : stopped();
+    {
+      const std::scoped_lock lock(mutex);
+      const auto found = flights.find(flight->scene_id);
+      if (found != flights.end() && found->second == flight) flights.erase(found);
+    }
+    flight->finish(result);
+  }
+}
+
+/// Border of one preparation.
+Result<ReadyScene> SceneCache::State::guarded_fly(const std::shared_ptr<Flight>& flight) {
+  try {
+    return fly(flight);
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorKind::kInternal, "render_failed", "out of memory while preparing the scene", ""};
+  } catch (const std::exception& fault) {
+    return Error{ErrorKind::kInternal, "render_failed", fault.what(), ""};
+  }
+}
+
+Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight) {
+  {
+    const std::scoped_lock lock(mutex);
+    if (auto scene = ready(flight->scene_id)) return std::move(*scene);
+  }
+  flight->report({PrepareStage::kImporting, 0.0});
+  auto record = parts_.store.scene(flight->scene_id);
+  if (!record) return record.error();
+  auto files = parts_.store.scene_files(flight->scene_id);
+  if (!files) return files.error();
+  imports_.add();
+  auto loaded = parts_.intake.load(record->kind, *files, flight->token());
+  if (!loaded) return loaded.error();
+  const std::string key = tree_key(*loaded->scene, BuildParams{});
+  auto tree = obtain_tree(flight, *loaded->scene, key);
+  if (!tree) return tree.error();
+  ReadyScene scene{loaded->scene, render::prepare(loaded->scene, tree->tree.tree),
+                   tree->tree.report, tree->built_now, key};
+  const std::scoped_lock lock(mutex);
+  keep(scene_key(flight->scene_id), scene, bytes_of(*scene.scene));
+  (void)kept.use(key);
+  reports[flight->scene_id] = scene.tree;
+  return scene;
+}
+
+void SceneCache::State::keep(const std::string& key, Kept value, std::uint64_t bytes) {
+  kept.insert(key, std::move(value), bytes);
+  bytes_.set(static_cast<double>(kept.bytes()));
+}
+
+bool SceneCache::State::is_wanted(const TreeFlight& tree_flight) const {
+  const std::scoped_lock lock(mutex);
+  for (const auto& flight : tree_flight.flights) {
+    if (flight->wanted()) return true;
+  }
+  return false;
+}
+
+void SceneCache::State::report(const TreeFlight& tree_flight, double fraction) const {
+  std::set<std::shared_ptr<Flight>> flights_now;
+  {
+    const std::scoped_lock lock(mutex);
+    flights_now = tree_flight.flights;
+  }
+  for (const auto& flight : flights_now) flight->report({PrepareStage::kBuilding, fraction});
+}
+
+std::optional<BuiltTree> SceneCache::State::build(TreeFlight& tree_flight,
+                                                  const render::Scene& scene) {
+  const auto runner = parts_.pool.task_runner(
+      [&](double fraction) { report(tree_flight, fraction); },
+      [&] { return !is_wanted(tree_flight); });
+  report(tree_flight, 0.0);
+  const SteadyTime begin = parts_.clock.steady();
+  auto tree = parts_.build(scene, *runner);
+  if (!tree) return std::nullopt;
+  builds_.add();
+  const double seconds = seconds_between(begin, parts_.clock.steady());
+  const render::BuildStats stats = render::build_stats(*tree);
+  parts_.log.info("tree_built", {{"triangles", stats.triangles}, {"seconds", seconds}});
+  return BuiltTree{std::move(tree), {seconds, stats}};
+}
+
+Result<SceneCache::State::NewTree> SceneCache::State::obtain_tree(
+    const std::shared_ptr<Flight>& flight, const render::Scene& scene, const std::string& key) {
+  std::unique_lock lock(mutex);
+  while (flight->wanted()) {
+    if (auto found = kept.use(key)) return NewTree{std::get<BuiltTree>(*found), false};
+    auto& slot = tree_flights_[key];
+    if (slot) {
+      // Somebody builds this very tree: wait with him, and keep him going.
+      const auto other = slot;
+      other->flights.insert(flight);
+      tree_ended_.wait(lock, [&] { return other->ended || !flight->wanted(); });
+      other->flights.erase(flight);
+      continue;
+    }
+    const auto mine = std::make_shared<TreeFlight>();
+    slot = mine;
+    mine->flights.insert(flight);
+    lock.unlock();
+    std::optional<BuiltTree> built;
+    std::exception_ptr fault;
+    try {
+      built = build(*mine, scene);
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    lock.lock();
+    mine->ended = true;
+    tree_flights_.erase(key);
+    if (built) keep(key, *built, built->report.stats.bytes);
+    tree_ended_.notify_all();
+    if (fault) std::rethrow_exception(fault);
+    if (built) return NewTree{std::move(*built), true};
+  }
+  return stopped();
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,56 @@
+// What a process leaves behind, and what the next one makes of it.
+#include <gtest/gtest.h>
+
+#include "support/server_rig.hpp"
+#include "support/temp_directory.hpp"
+
+namespace raykiln::tests {
+namespace {
+
+using namespace server;
+
+TEST(Restart, UnfinishedJobsRunAgainAndFinishedOnesStay) {
+  const TempDirectory directory;
+  std::string done, running;
+  std::vector<float> picture;
+  JobSnapshot before;
+  {
+    ServerRig rig(directory.path());
+    const auto scene = rig.add_scene("a room")->scene.record.id;
+    done = rig.submit(small_job(scene))->job.id;
+    before = rig.wait_final(done);
+    picture = (*rig.image(done))->image.rgb;
+    running = rig.submit(small_job(scene, 50'000))->job.id;
+    rig.follow(running, [](const auto& s) { return s.state == JobState::kRendering; });
+    rig.scheduler->shutdown(0ms);
+    EXPECT_EQ(rig.get(running).error().code, "shutting_down");
+  }
+  ServerRig rig(directory.path());
+  const auto after = rig.get(done);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->state, JobState::kCompleted);
+  EXPECT_EQ(after->revision, before.revision);
+  EXPECT_EQ(after->statistics.camera_rays, before.statistics.camera_rays);
+  EXPECT_EQ((*rig.image(done))->image.rgb, picture);
+  const auto again =
+      rig.follow(running, [](const auto& s) { return s.state == JobState::kRendering; });
+  EXPECT_GT(again.revision, 3U) << "revisions never go back";
+  EXPECT_TRUE(rig.cancel(running));
+  EXPECT_EQ(rig.wait_final(running).state, JobState::kCancelled);
+}
+
+TEST(Restart, ShutdownLetsWorkDrain) {
+  const TempDirectory directory;
+  std::string id;
+  {
+    ServerRig rig(directory.path());
+    id = rig.submit(small_job(rig.add_scene("a room")->scene.record.id, 64))->job.id;
+    rig.follow(id, [](const auto& s) { return s.state != JobState::kQueued; });
+    rig.scheduler->shutdown(60s);
+  }
+  ServerRig rig(directory.path());
+  EXPECT_EQ(rig.get(id)->state, JobState::kCompleted);
+}
+
+}  // namespace
+}  // namespace raykiln::tests
