@@ -67,6 +67,9 @@ std::variant<Bytes, EncodeError> encode_exr(const Image& image,
   OIIO::ImageSpec spec = rgb_spec(image, OIIO::TypeDesc::FLOAT);
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("compression", "zip");
+  // Unless the caller gives a time, a fixed one: the library would write now, and equal pictures
+  // would not be equal bytes.
+  spec.attribute("DateTime", "1970:01:01 00:00:00");
   for (const auto& [key, value] : attributes) spec.attribute(key, value);
   return encode("a.exr", spec, OIIO::TypeDesc::FLOAT, image.rgb.data());
 }

@@ -2,11 +2,21 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 namespace raykiln::render {
 namespace {
 
 std::uint32_t as_count(double value) { return static_cast<std::uint32_t>(value); }
+
+/// Every plane is there with as many values as the tile's pixels need.
+bool planes_fit(const PlaneSet& set, std::size_t pixels) {
+  const auto specs = block_planes();
+  return std::equal(set.planes.begin(), set.planes.end(), specs.begin(), specs.end(),
+                    [pixels](const std::vector<double>& plane, const PlaneSpec& spec) {
+                      return plane.size() == pixels * static_cast<std::size_t>(spec.channels);
+                    });
+}
 
 double sum_luminance(const std::array<double, 3>& c) { return luminance({c[0], c[1], c[2]}); }
 
@@ -21,14 +31,14 @@ std::size_t Film::bytes_per_pixel() { return sizeof(Pixel) + sizeof(Tail); }
 
 Film::Tail Film::read_block(const BlockResult& result, std::size_t pixel) {
   const auto& planes = result.planes.planes;
-  const auto at = [&](BlockPlane plane) { return planes[plane][pixel]; };
+  const auto at = [&](BlockPlane::Index plane) { return planes[plane][pixel]; };
   Tail tail;
-  std::copy_n(&planes[kBeauty][3 * pixel], 3, tail.beauty.begin());
-  tail.moment = at(kLuminanceMoment);
-  tail.largest = at(kLargest);
-  tail.counts = {as_count(at(kNan)), as_count(at(kInf)), as_count(at(kNegative)),
-                 as_count(at(kTruncated))};
-  tail.samples = as_count(at(kSamples));
+  std::copy_n(&planes[BlockPlane::kBeauty][3 * pixel], 3, tail.beauty.begin());
+  tail.moment = at(BlockPlane::kLuminanceMoment);
+  tail.largest = at(BlockPlane::kLargest);
+  tail.counts = {as_count(at(BlockPlane::kNan)), as_count(at(BlockPlane::kInf)), as_count(at(BlockPlane::kNegative)),
+                 as_count(at(BlockPlane::kTruncated))};
+  tail.samples = as_count(at(BlockPlane::kSamples));
   tail.replicate = static_cast<std::uint32_t>(result.block.index % kReplicates);
   return tail;
 }
@@ -55,6 +65,11 @@ void Film::fold_pixel(Pixel& into, const Tail& from) {
 }
 
 void Film::fold(const PixelRect& tile, const BlockResult& result) {
+  const bool inside = 0 <= tile.x0 && tile.x0 <= tile.x1 && tile.x1 <= width_ && 0 <= tile.y0 &&
+                      tile.y0 <= tile.y1 && tile.y1 <= height_;
+  if (!inside || !planes_fit(result.planes, tile.pixels())) {
+    throw std::invalid_argument("the block does not fit the film");
+  }
   if (!result.block.complete && tails_.empty()) tails_.resize(pixels_.size());
   std::size_t source = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {

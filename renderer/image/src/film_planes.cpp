@@ -8,7 +8,7 @@
 namespace raykiln::render {
 namespace {
 
-constexpr std::array<PlaneSpec, kBlockPlanes> kBlockSpecs{{
+constexpr std::array<PlaneSpec, BlockPlane::kCount> kBlockSpecs{{
     {"beauty", 3, Fold::kSum},
     {"samples", 1, Fold::kSum},
     {"luminance_moment", 1, Fold::kMoments},
@@ -19,15 +19,15 @@ constexpr std::array<PlaneSpec, kBlockPlanes> kBlockSpecs{{
     {"truncated", 1, Fold::kSum},
 }};
 
-constexpr std::array<PlaneSpec, kBlockPlanes + 2> kFilmSpecs{{
-    kBlockSpecs[kBeauty],
-    kBlockSpecs[kSamples],
-    kBlockSpecs[kLuminanceMoment],
-    kBlockSpecs[kLargest],
-    kBlockSpecs[kNan],
-    kBlockSpecs[kInf],
-    kBlockSpecs[kNegative],
-    kBlockSpecs[kTruncated],
+constexpr std::array<PlaneSpec, BlockPlane::kCount + 2> kFilmSpecs{{
+    kBlockSpecs[BlockPlane::kBeauty],
+    kBlockSpecs[BlockPlane::kSamples],
+    kBlockSpecs[BlockPlane::kLuminanceMoment],
+    kBlockSpecs[BlockPlane::kLargest],
+    kBlockSpecs[BlockPlane::kNan],
+    kBlockSpecs[BlockPlane::kInf],
+    kBlockSpecs[BlockPlane::kNegative],
+    kBlockSpecs[BlockPlane::kTruncated],
     {"luminance_count", kReplicates, Fold::kSum},
     {"luminance_sum", kReplicates, Fold::kSum},
 }};
@@ -56,32 +56,32 @@ PlaneSet make_block_planes(std::size_t pixels) {
 
 bool add_sample(PlaneSet& block, std::size_t pixel, const Rgbd& radiance, bool truncated) {
   auto& planes = block.planes;
-  if (truncated) planes[kTruncated][pixel] += 1.0;
+  if (truncated) planes[BlockPlane::kTruncated][pixel] += 1.0;
   if (any_nan(radiance)) {
-    planes[kNan][pixel] += 1.0;
+    planes[BlockPlane::kNan][pixel] += 1.0;
     return false;
   }
   if (!fits_float(radiance)) {
-    planes[kInf][pixel] += 1.0;
+    planes[BlockPlane::kInf][pixel] += 1.0;
     return false;
   }
-  if (radiance.x < 0.0 || radiance.y < 0.0 || radiance.z < 0.0) planes[kNegative][pixel] += 1.0;
+  if (radiance.x < 0.0 || radiance.y < 0.0 || radiance.z < 0.0) planes[BlockPlane::kNegative][pixel] += 1.0;
 
-  double* beauty = &planes[kBeauty][3 * pixel];
+  double* beauty = &planes[BlockPlane::kBeauty][3 * pixel];
   const double sum_before = luminance({beauty[0], beauty[1], beauty[2]});
-  const double count_before = planes[kSamples][pixel];
+  const double count_before = planes[BlockPlane::kSamples][pixel];
   beauty[0] += radiance.x;
   beauty[1] += radiance.y;
   beauty[2] += radiance.z;
-  planes[kSamples][pixel] += 1.0;
+  planes[BlockPlane::kSamples][pixel] += 1.0;
 
   const double y = luminance(radiance);
   if (count_before > 0.0) {
     const double deviation = y - sum_before / count_before;
-    planes[kLuminanceMoment][pixel] +=
+    planes[BlockPlane::kLuminanceMoment][pixel] +=
         deviation * deviation * (count_before / (count_before + 1.0));
   }
-  planes[kLargest][pixel] = std::max(planes[kLargest][pixel], y);
+  planes[BlockPlane::kLargest][pixel] = std::max(planes[BlockPlane::kLargest][pixel], y);
   return true;
 }
 

@@ -20,7 +20,7 @@ TileResult render(const SceneBuilder& b, int side, int depth, std::uint64_t samp
 double brightest(const TileResult& result) {
   double brightest = 0.0;
   for (const BlockResult& block : result.blocks) {
-    for (const double x : block.planes.planes[kLargest]) brightest = std::max(brightest, x);
+    for (const double x : block.planes.planes[BlockPlane::kLargest]) brightest = std::max(brightest, x);
   }
   return brightest;
 }

@@ -61,6 +61,7 @@ TEST(EncodeExr, RoundTripIsExactAndKeepsAttributes) {
   EXPECT_EQ(spec.format, OIIO::TypeDesc::FLOAT);
   EXPECT_EQ(spec.get_string_attribute("raykiln:seed"), "18446744073709551615");
   EXPECT_EQ(spec.get_string_attribute("raykiln:light_model"), "seed");
+  EXPECT_EQ(spec.get_string_attribute("DateTime"), "1970:01:01 00:00:00");  // not the present time
 }
 
 TEST(Encode, RowZeroIsAtTheTop) {

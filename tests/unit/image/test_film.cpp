@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "raykiln/image/film.hpp"
@@ -98,12 +99,22 @@ TEST(Film, TileGoesToItsPlaceAndUnsampledPixelsStayBlack) {
   EXPECT_TRUE(film.plane("no such plane").empty());
 }
 
+TEST(Film, RefusesABlockThatDoesNotFit) {
+  Film film(3, 2);
+  const BlockResult block{.block = sample_block(0), .planes = make_block_planes(2)};
+  EXPECT_THROW(film.fold({2, 0, 4, 1}, block), std::invalid_argument);
+  EXPECT_THROW(film.fold({-1, 0, 1, 1}, block), std::invalid_argument);
+  EXPECT_THROW(film.fold({0, 0, 1, 1}, block), std::invalid_argument);
+  EXPECT_THROW(film.fold({0, 0, 2, 1}, {.block = sample_block(0), .planes = {}}), std::invalid_argument);
+  EXPECT_NO_THROW(film.fold({0, 0, 2, 1}, block));
+}
+
 TEST(Film, AHundredMillionOnesAddUp) {
   // Whole blocks of ones, written without rendering them: double sums do not stop at 2^24.
   Film film(1, 1);
   BlockResult block = block_of(7, std::vector<double>(16, 1.0));
-  block.planes.planes[kBeauty] = {1e6, 1e6, 1e6};
-  block.planes.planes[kSamples] = {1e6};
+  block.planes.planes[BlockPlane::kBeauty] = {1e6, 1e6, 1e6};
+  block.planes.planes[BlockPlane::kSamples] = {1e6};
   for (int i = 0; i < 100; ++i) film.fold(kOnePixel, block);
   EXPECT_EQ(film.plane("beauty")[0], 1e8);
   EXPECT_EQ(film.resolve().rgb[0], 1.0F);

@@ -51,16 +51,18 @@ struct PlaneSpec {
 };
 
 /// The planes of a block, in the order of PlaneSet::planes.
-enum BlockPlane : std::size_t {
-  kBeauty,            ///< 3 channels: sums of RGB radiance over the samples that count
-  kSamples,           ///< samples that count: rendered and finite
-  kLuminanceMoment,   ///< sum of squared deviations of luminance from its mean in this block
-  kLargest,           ///< largest luminance of a sample (0 when there is none)
-  kNan,               ///< samples dropped because a channel was NaN
-  kInf,               ///< samples dropped because a channel did not fit a float32
-  kNegative,          ///< samples with a negative channel (they count)
-  kTruncated,         ///< samples whose path was cut at max_depth while it could go on
-  kBlockPlanes
+struct BlockPlane {
+  enum Index : std::size_t {
+    kBeauty,            ///< 3 channels: sums of RGB radiance over the samples that count
+    kSamples,           ///< samples that count: rendered and finite
+    kLuminanceMoment,   ///< sum of squared deviations of luminance from its mean in this block
+    kLargest,           ///< largest luminance of a sample (0 when there is none)
+    kNan,               ///< samples dropped because a channel was NaN
+    kInf,               ///< samples dropped because a channel did not fit a float32
+    kNegative,          ///< samples with a negative channel (they count)
+    kTruncated,         ///< samples whose path was cut at max_depth while it could go on
+    kCount
+  };
 };
 [[nodiscard]] std::span<const PlaneSpec> block_planes();
 
@@ -106,7 +108,8 @@ class Film {
 
   /// Folds a block of a tile into its pixels. Blocks of a pixel must come in order of index; the
   /// caller sees to it. An incomplete block is kept apart until another block of the pixel comes
-  /// (the same index again, whole or longer), which replaces it.
+  /// (the same index again, whole or longer), which replaces it. Throws std::invalid_argument when
+  /// tile or planes do not fit this film: a broken promise, not an input.
   void fold(const PixelRect& tile, const BlockResult& block);
 
   /// Mean of all samples so far; black where there are none.
