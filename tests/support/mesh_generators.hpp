@@ -63,7 +63,7 @@ struct TestMesh {
     positions.insert(positions.end(), {a, b, c});
     triangles.push_back({n, n + 1, n + 2});
   }
-  void append(const TestMesh& other) {
+  void append(TestMesh other) {  // a copy: a mesh may be appended to itself
     const auto n = static_cast<std::uint32_t>(positions.size());
     positions.insert(positions.end(), other.positions.begin(), other.positions.end());
     for (const auto& t : other.triangles) triangles.push_back({t[0] + n, t[1] + n, t[2] + n});

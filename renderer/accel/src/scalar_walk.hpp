@@ -5,8 +5,8 @@
 // by at most 12 w M; so when it reports a hit, a point of the exact triangle lies within 12 w M of
 // the exact ray. That point lies, up to the rounding of clipping (some w M), in a leaf that lists
 // the triangle. Cells are therefore taken to be larger by kAbsoluteSlack = 1024 w M on all sides, and
-// by kRelativeSlack = 8 u of a face's distance: 3 for the rounding of the t of the face, 1 for that
-// of the hit's t, the rest in reserve. Then the interval of some such leaf holds the reported t, and
+// by kRelativeSlack = 6 u of a face's distance: 4 for the roundings of the t of the face, 1 for that
+// of the hit's t, 1 in reserve. Then the interval of some such leaf holds the reported t, and
 // cells may be cut off by t_min, t_max and a best hit *strictly* before the entry; equal t goes on,
 // so the lowest id wins.
 #pragma once
@@ -22,7 +22,7 @@
 namespace raykiln::render {
 
 inline constexpr float kAbsoluteSlack = 0x1p-43F;
-inline constexpr float kRelativeSlack = 8.0F * 0x1p-24F;
+inline constexpr float kRelativeSlack = 6.0F * 0x1p-24F;
 
 class ScalarWalk {
  public:

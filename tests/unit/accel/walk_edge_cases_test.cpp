@@ -86,6 +86,29 @@ TEST(WalkEdgeCases, AxisParallelRaysDoNotVisitTheWholeTree) {
   EXPECT_LE(a.node_steps, 4 * b.node_steps);
 }
 
+// The slack of the cells may not swallow the scene when the origin is far away. From a million
+// times the scene's size a float t cannot tell points apart that lie 0.06 of it from each other, so
+// more cells must be looked at to find the lowest id among equals.
+TEST(WalkEdgeCases, FarOriginsDoNotVisitTheWholeTree) {
+  const TestMesh mesh = soup(20'000);
+  const auto tree = build(mesh);
+  TestRandom random(4);
+  std::vector<std::uint64_t> steps;
+  for (const float distance : {2.0F, 1e4F, 1e6F}) {
+    std::vector<Ray> rays;
+    for (int i = 0; i < 1000; ++i) {
+      rays.push_back(ray_to(distance * random.direction(), random.in_box(0, 1)));
+    }
+    std::vector<Hit> hits(rays.size());
+    TraversalCounters counters;
+    render::closest_hits(*tree, rays, hits, {}, render::Traversal::kTree, &counters);
+    steps.push_back(counters.node_steps);
+    EXPECT_EQ(differences_from_brute_force(*tree, rays), 0U);
+  }
+  EXPECT_LE(steps[1], steps[0] * 3 / 2);
+  EXPECT_LE(steps[2], steps[0] * 20);
+}
+
 TEST(WalkEdgeCases, OriginsOnTheRootBox) {
   const TestMesh mesh = box_room(3);
   const auto tree = build(mesh);
