@@ -103,7 +103,7 @@ class Finisher {
       if (with_normals) draft_.corner_normals[kept] = usable(draft_.corner_normals[i]);
       ++kept;
     }
-    report_flat(draft_.triangles.size() - kept, collapsed);
+    report_dropped(draft_.triangles.size() - kept, collapsed);
     draft_.positions = {};
     draft_.triangles.resize(kept);
     draft_.material_ids.resize(kept);
@@ -126,19 +126,22 @@ class Finisher {
     for (std::uint32_t& id : ids) {
       if (id == kNoNormal || draft_.normals[id] != Vec3f(0.0F)) continue;
       id = kNoNormal;
-      diagnostics_.warn(ImportWarningCode::kInvalidNormal,
-                        "normals of length 0 are replaced by those of the triangles",
-                        report_.root_file);
+      ++invalid_normals_;
     }
     return ids;
   }
 
-  void report_flat(std::uint64_t flat, std::uint64_t collapsed) {
+  void report_dropped(std::uint64_t flat, std::uint64_t collapsed) {
     report_.zero_area_triangles = flat;
     if (flat > collapsed) {
       diagnostics_.warn(ImportWarningCode::kZeroAreaTriangles,
                         "triangles without area cannot be hit and are dropped", report_.root_file,
                         "", flat - collapsed);
+    }
+    if (invalid_normals_ > 0) {
+      diagnostics_.warn(ImportWarningCode::kInvalidNormal,
+                        "normals of length 0 are replaced by those of the triangles",
+                        report_.root_file, "", invalid_normals_);
     }
     if (collapsed > 0) {
       diagnostics_.warn(ImportWarningCode::kCollapsedTriangles,
@@ -254,6 +257,7 @@ class Finisher {
   ImportReport& report_;
   Bounds3d bounds_{};
   std::vector<bool> used_;
+  std::uint64_t invalid_normals_ = 0;
 };
 
 }  // namespace

@@ -71,6 +71,9 @@ bool GltfMeshes::instantiate(std::uint64_t index, const Mat4d& to_world, const J
 
 bool GltfMeshes::primitive(const JsonAt& at, const Mat4d& to_world) {
   if (!at.expect_object()) return false;
+  if (++primitive_visits_ > at.diagnostics().limits().max_primitive_visits) {
+    return at.fail(ImportErrorCode::kLimitExceeded, "the scene has too many primitives");
+  }
   const auto attributes = at.object("attributes");
   const std::uint64_t mode = at.integer_or("mode", kTriangles);
   if (at.diagnostics().failed()) return false;

@@ -39,6 +39,7 @@ class GltfMeshes {
   GltfAccessors* accessors_;
   std::vector<std::uint32_t> material_ids_;
   SceneDraft* draft_;
+  std::uint64_t primitive_visits_ = 0;
 };
 
 }  // namespace raykiln::render::io

@@ -14,6 +14,7 @@
 namespace raykiln::render::io {
 namespace {
 
+constexpr std::size_t kMaxKindBytes = 80;  // of an unknown statement's first word
 constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFU;
 
 class ObjReader {
@@ -33,11 +34,19 @@ class ObjReader {
       if (!statement(text)) return false;
     }
     if (diagnostics_.failed() || !faces_.finish() || !read_libraries()) return false;
+    report_skipped();
     report_unused();
     return true;
   }
 
  private:
+  /// A kind of statement that is not read.
+  struct Skipped {
+    std::string word;
+    std::uint64_t line;  ///< of the first one
+    std::uint64_t count;
+  };
+
   bool statement(std::string_view text) {
     const std::string_view word = take_word(text);
     if (word.empty() || word[0] == '#') return true;
@@ -50,11 +59,12 @@ class ObjReader {
     return other(word);
   }
 
+  // Only counted here: a hostile file may hold half a billion of them.
   bool other(std::string_view word) {
-    if (word == "l" || word == "p") {
-      warn(ImportWarningCode::kIgnoredElement,
-           word == "l" ? "lines (l) have no surface and are ignored"
-                       : "points (p) have no surface and are ignored");
+    word = word.substr(0, kMaxKindBytes);
+    for (Skipped& known : skipped_) {
+      if (known.word != word) continue;
+      ++known.count;
       return true;
     }
     const bool text_like = std::all_of(word.begin(), word.end(), [](char c) {
@@ -64,8 +74,29 @@ class ObjReader {
       return lines_.fail(ImportErrorCode::kSyntax, "the line is not text",
                          "check that this is an OBJ file");
     }
-    warn(ImportWarningCode::kUnknownStatement, "the statement " + in_quotes(word) + " is ignored");
+    if (skipped_.size() < diagnostics_.limits().max_warnings) {
+      skipped_.push_back({std::string(word), lines_.line(), 1});
+    } else {
+      ++more_skipped_;
+    }
     return true;
+  }
+
+  void report_skipped() {
+    for (const Skipped& kind : skipped_) {
+      const bool element = kind.word == "l" || kind.word == "p";
+      const std::string message =
+          kind.word == "l"   ? "lines (l) have no surface and are ignored"
+          : kind.word == "p" ? "points (p) have no surface and are ignored"
+                             : "the statement " + in_quotes(kind.word) + " is ignored";
+      diagnostics_.warn(
+          element ? ImportWarningCode::kIgnoredElement : ImportWarningCode::kUnknownStatement,
+          message, name_, line_text(kind.line), kind.count);
+    }
+    if (more_skipped_ > 0) {
+      diagnostics_.warn(ImportWarningCode::kUnknownStatement,
+                        "statements of further kinds are ignored", name_, "", more_skipped_);
+    }
   }
 
   bool three_numbers(std::string_view& text, std::string_view what, Vec3d& v) {
@@ -191,6 +222,8 @@ class ObjReader {
   std::uint32_t material_ = kNoMaterial;
   std::vector<std::string> libraries_;
   std::size_t library_statements_ = 0;
+  std::vector<Skipped> skipped_;
+  std::uint64_t more_skipped_ = 0;
   bool has_extra_ = false;
 };
 

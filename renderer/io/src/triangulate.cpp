@@ -81,6 +81,8 @@ class EarClipper {
       without_ear = 0;
     }
     triangles.push_back({previous_[at], at, next_[at]});
+    // The areas of the pieces add up to that of the polygon: what was cut twice is missing here.
+    if (turn(p_[previous_[at]], p_[at], p_[next_[at]]) < 0.0) status = PolygonStatus::kCrossing;
     return status;
   }
 

@@ -25,7 +25,8 @@ struct ImportLimits {
   std::size_t max_mtl_bytes = std::size_t{64} << 20;
   std::size_t max_mtl_files = 1'000;
   std::size_t max_node_depth = 256;
-  std::size_t max_node_visits = 1'000'000;
+  std::uint64_t max_node_visits = 1'000'000;
+  std::uint64_t max_primitive_visits = 5'000'000;  ///< primitives times their instances
   std::size_t max_warnings = 64;  ///< distinct ones; the rest are counted together
 };
 

@@ -1,0 +1,295 @@
+// What the glTF and GLB readers accept.
+#include <cmath>
+#include <string>
+
+#include "support/io/gltf_builder.hpp"
+#include "support/io/import_text.hpp"
+
+namespace raykiln::render::test {
+namespace {
+
+using Json = nlohmann::json;
+using Warn = ImportWarningCode;
+
+ImportedScene scene_of(const GltfBuilder& builder) {
+  auto imported = expect_scene({{"a.gltf", builder.gltf()}});
+  expect_sound(imported);
+  return imported;
+}
+
+TEST(Gltf, ATriangleFromEachContainer) {
+  GltfBuilder builder;
+  builder.triangle();
+  const auto from_gltf = scene_of(builder);
+  const auto from_glb = expect_scene({{"a.glb", builder.glb()}});
+  EXPECT_EQ(from_gltf.report.format, SceneFormat::kGltf);
+  EXPECT_EQ(from_glb.report.format, SceneFormat::kGlb);
+  for (const auto* imported : {&from_gltf, &from_glb}) {
+    ASSERT_EQ(imported->scene.mesh.triangles.size(), 1U);
+    EXPECT_EQ(area(imported->scene, 0), 0.5);
+    EXPECT_EQ(normal_of(imported->scene, 0), Vec3d(0, 0, 1));
+  }
+}
+
+TEST(Gltf, BuffersBesideTheFileWithEscapedNames) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["buffers"] =
+      Json::array({{{"byteLength", builder.bin.size()}, {"uri", "sub/my%20data.bin"}}});
+  const auto imported =
+      expect_scene({{"d/a.gltf", builder.gltf()}, {"d/sub/my data.bin", builder.bin + "more"}});
+  EXPECT_EQ(imported.scene.mesh.triangles.size(), 1U);
+}
+
+// Strip and fan of the same square, and the modes without surface.
+TEST(Gltf, PrimitiveModes) {
+  const std::vector<float> strip{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  const std::vector<float> fan{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  for (const int mode : {5, 6}) {
+    GltfBuilder builder;
+    builder.primitive({{"attributes", {{"POSITION", builder.vec3(mode == 5 ? strip : fan)}}}, {"mode", mode}});
+    const auto imported = scene_of(builder);
+    ASSERT_EQ(imported.scene.mesh.triangles.size(), 2U);
+    EXPECT_EQ(total_area(imported.scene), 1.0);
+    EXPECT_EQ(normal_of(imported.scene, 0), Vec3d(0, 0, 1)) << mode;
+    EXPECT_EQ(normal_of(imported.scene, 1), Vec3d(0, 0, 1)) << mode;
+  }
+  GltfBuilder builder;
+  builder.triangle();
+  for (const int mode : {0, 1, 2, 3}) {
+    builder.primitive({{"attributes", {{"POSITION", builder.vec3(fan)}}}, {"mode", mode}});
+  }
+  EXPECT_EQ(count_of(scene_of(builder), Warn::kIgnoredElement), 4U);
+}
+
+TEST(Gltf, IndexTypes) {
+  const std::vector<float> square{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  for (const int type : {5121, 5123, 5125}) {
+    GltfBuilder builder;
+    const int view = type == 5121   ? builder.view<std::uint8_t>({0, 1, 2, 0, 2, 3})
+                     : type == 5123 ? builder.view<std::uint16_t>({0, 1, 2, 0, 2, 3})
+                                    : builder.view<std::uint32_t>({0, 1, 2, 0, 2, 3});
+    builder.primitive({{"attributes", {{"POSITION", builder.vec3(square)}}},
+                       {"indices", builder.accessor(view, type, 6, "SCALAR")}});
+    EXPECT_EQ(total_area(scene_of(builder).scene), 1.0) << type;
+  }
+}
+
+TEST(Gltf, StridedAndQuantizedPositions) {
+  GltfBuilder builder;
+  const int view = builder.view<std::int16_t>({0, 0, 0, 99, 32767, 0, 0, 99, 0, 32767, 0, 99}, 8);
+  const int accessor = builder.accessor(view, 5122, 3, "VEC3");
+  builder.root["accessors"][accessor]["normalized"] = true;
+  builder.root["extensionsRequired"] = {"KHR_mesh_quantization"};
+  builder.primitive({{"attributes", {{"POSITION", accessor}}}});
+  EXPECT_EQ(total_area(scene_of(builder).scene), 0.5);
+}
+
+TEST(Gltf, SparseAccessorsReplaceElements) {
+  GltfBuilder builder;
+  const int accessor = builder.vec3({0, 0, 0, 1, 0, 0, 7, 7, 7});
+  const int indices = builder.view<std::uint8_t>({2});
+  const int values = builder.view<float>({0, 4, 0});
+  builder.root["accessors"][accessor]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+      {"values", {{"bufferView", values}}}};
+  builder.primitive({{"attributes", {{"POSITION", accessor}}}});
+  EXPECT_EQ(total_area(scene_of(builder).scene), 2.0);
+}
+
+TEST(Gltf, SparseWithoutABaseStartsAtZero) {
+  GltfBuilder builder;
+  const int indices = builder.view<std::uint16_t>({1, 2});
+  const int values = builder.view<float>({1, 0, 0, 0, 1, 0});
+  builder.root["accessors"].push_back(
+      {{"componentType", 5126}, {"count", 3}, {"type", "VEC3"},
+       {"sparse", {{"count", 2},
+                   {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                   {"values", {{"bufferView", values}}}}}});
+  builder.primitive({{"attributes", {{"POSITION", 0}}}});
+  EXPECT_EQ(total_area(scene_of(builder).scene), 0.5);
+}
+
+TEST(Gltf, TransformsApplyFromTheRootDownwards) {
+  GltfBuilder builder;
+  builder.triangle();
+  const double h = std::sqrt(0.5);
+  builder.root["nodes"] = Json::array(
+      {{{"translation", {10, 0, 0}}, {"rotation", {0, 0, h, h}}, {"children", {1}}},
+       {{"matrix", {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 1, 1}}, {"mesh", 0}}});
+  const auto imported = scene_of(builder);
+  // (1,0,0) -> (2,0,1) -> 90 degrees about z -> (0,2,1) -> (10,2,1)
+  const Vec3d p = Vec3d(imported.scene.mesh.positions[1]) + imported.scene.origin;
+  EXPECT_NEAR(p.x, 10.0, 1e-6);
+  EXPECT_NEAR(p.y, 2.0, 1e-6);
+  EXPECT_NEAR(p.z, 1.0, 1e-6);
+}
+
+TEST(Gltf, MirroringKeepsTheOutsideOutside) {
+  GltfBuilder builder;
+  const int normals = builder.vec3({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  builder.triangle();
+  builder.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = normals;
+  builder.root["nodes"][0]["scale"] = {-1, 1, 1};
+  const auto imported = scene_of(builder);
+  EXPECT_EQ(normal_of(imported.scene, 0), Vec3d(0, 0, 1));
+  EXPECT_EQ(imported.scene.mesh.normals[0], Vec3f(0, 0, 1));
+}
+
+TEST(Gltf, NormalsFollowTheInverseTranspose) {
+  GltfBuilder builder;
+  const float h = static_cast<float>(std::sqrt(0.5));
+  const int normals = builder.vec3({h, h, 0, h, h, 0, h, h, 0});
+  builder.primitive({{"attributes", {{"POSITION", builder.vec3({1, 0, 0, 0, 1, 0, 1, 0, 1})}, {"NORMAL", normals}}}});
+  builder.root["nodes"][0]["scale"] = {4, 1, 1};
+  const auto imported = scene_of(builder);
+  const Vec3d expected = normalize(Vec3d(0.25, 1.0, 0.0));
+  EXPECT_NEAR(dot(Vec3d(imported.scene.mesh.normals[0]), expected), 1.0, 1e-6);
+  EXPECT_NEAR(std::abs(dot(normal_of(imported.scene, 0), expected)), 1.0, 1e-6);
+}
+
+TEST(Gltf, OneMeshUsedTwiceIsTwoMeshes) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["nodes"] =
+      Json::array({{{"mesh", 0}, {"children", {1}}}, {{"mesh", 0}, {"translation", {0, 0, 1}}}});
+  EXPECT_EQ(scene_of(builder).scene.mesh.triangles.size(), 2U);
+}
+
+TEST(Gltf, TheDefaultSceneIsChosen) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["nodes"].push_back({{"mesh", 0}, {"scale", {2, 2, 2}}});
+  builder.root["scenes"].push_back({{"nodes", {1}}});
+  builder.root["scene"] = 1;
+  EXPECT_EQ(total_area(scene_of(builder).scene), 2.0);
+  builder.root.erase("scene");
+  EXPECT_EQ(total_area(scene_of(builder).scene), 0.5);
+  builder.root.erase("scenes");
+  EXPECT_EQ(total_area(scene_of(builder).scene), 2.5);
+}
+
+TEST(Gltf, CamerasLookAlongMinusZ) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["cameras"] = {{{"type", "perspective"}, {"name", "c"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}},
+                             {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}}}}};
+  builder.root["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, 2}}, {"scale", {3, 3, 3}}});
+  builder.root["nodes"].push_back({{"camera", 1}});
+  builder.root["scenes"][0]["nodes"] = {0, 1, 2};
+  const auto imported = scene_of(builder);
+  ASSERT_EQ(imported.scene.cameras.size(), 1U);
+  EXPECT_EQ(imported.scene.cameras[0].name, "c");
+  EXPECT_EQ(imported.scene.cameras[0].eye, Vec3f(0, 0, 2));
+  EXPECT_EQ(imported.scene.cameras[0].forward, Vec3f(0, 0, -1));
+  EXPECT_FLOAT_EQ(imported.scene.cameras[0].fov_y_rad, 0.8F);
+  EXPECT_EQ(count_of(imported, Warn::kUnsupportedCamera), 1U);
+}
+
+TEST(Gltf, PointLightsAreReadOthersListed) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  builder.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 8}}, {{"type", "spot"}}};
+  for (const int light : {0, 1}) {
+    builder.root["nodes"].push_back({{"translation", {0, 3, 0}}});
+    builder.root["nodes"].back()["extensions"]["KHR_lights_punctual"]["light"] = light;
+  }
+  builder.root["scenes"][0]["nodes"] = {0, 1, 2};
+  const auto imported = scene_of(builder);
+  ASSERT_EQ(imported.scene.point_lights.size(), 1U);
+  EXPECT_EQ(imported.scene.point_lights[0].intensity, Rgb(8, 4, 0));
+  EXPECT_EQ(imported.scene.point_lights[0].position, Vec3f(0, 3, 0));
+  EXPECT_EQ(count_of(imported, Warn::kUnsupportedLight), 1U);
+}
+
+Material material_of(const Json& material) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["materials"] = Json::array({material});
+  builder.root["meshes"][0]["primitives"][0]["material"] = 0;
+  const auto imported = scene_of(builder);
+  return imported.scene.materials.empty() ? Material{} : imported.scene.materials[0];
+}
+
+TEST(GltfMaterial, MetalReflectsItsColour) {
+  const Material m = material_of({{"pbrMetallicRoughness",
+      {{"baseColorFactor", {0.9, 0.6, 0.3, 1}}, {"metallicFactor", 1}, {"roughnessFactor", 0.5}}}});
+  EXPECT_EQ(m.diffuse, Rgb(0.0F));
+  EXPECT_FLOAT_EQ(m.specular.x, 0.9F);
+  EXPECT_NEAR(m.specular_exp, 7.5, 1e-9);
+}
+
+TEST(GltfMaterial, DielectricsReflectFourPercent) {
+  const Material m = material_of({{"pbrMetallicRoughness",
+      {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}}}});
+  EXPECT_FLOAT_EQ(m.specular.x, 0.04F);
+  EXPECT_FLOAT_EQ(m.diffuse.x, 0.48F);
+}
+
+TEST(GltfMaterial, TransmissionAndIndexMakeGlass) {
+  const Material m = material_of(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                       {"KHR_materials_ior", {{"ior", 1.33}}}}}});
+  EXPECT_EQ(m.transparent, 1.0F);
+  EXPECT_EQ(m.diffuse, Rgb(0.0F));
+  EXPECT_EQ(m.specular, Rgb(1.0F));
+  EXPECT_FLOAT_EQ(m.index_of_refraction, 1.33F);
+  EXPECT_EQ(m.specular_exp, 1e10);
+}
+
+TEST(GltfMaterial, EmissionHasAStrength) {
+  const Material m = material_of(
+      {{"emissiveFactor", {1, 0.5, 0}},
+       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 20}}}}}});
+  EXPECT_EQ(m.emission, Rgb(20, 10, 0));
+}
+
+TEST(GltfMaterial, AlphaCountsOnlyWhenBlended) {
+  const Json pbr = {{"baseColorFactor", {1, 1, 1, 0.25}}, {"metallicFactor", 0}};
+  EXPECT_EQ(material_of({{"pbrMetallicRoughness", pbr}}).transparent, 0.0F);
+  const Json blend = {{"pbrMetallicRoughness", pbr}, {"alphaMode", "BLEND"}};
+  EXPECT_FLOAT_EQ(material_of(blend).transparent, 0.75F);
+}
+
+TEST(GltfMaterial, EqualNamesStayApart) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["materials"] = {{{"name", "m"}, {"emissiveFactor", {1, 0, 0}}},
+                               {{"name", "m"}, {"emissiveFactor", {0, 1, 0}}}};
+  builder.root["meshes"][0]["primitives"][0]["material"] = 1;
+  const auto imported = scene_of(builder);
+  ASSERT_EQ(imported.scene.materials.size(), 2U);
+  const Material& used = imported.scene.materials[imported.scene.mesh.material_ids[0]];
+  EXPECT_EQ(used.emission, Rgb(0, 1, 0));
+  EXPECT_NE(imported.scene.materials[0].name, imported.scene.materials[1].name);
+}
+
+TEST(Gltf, WhatIsNotShownIsListed) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["animations"] = Json::array();
+  builder.root["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_texture_transform"};
+  builder.root["extensionsRequired"] = {"KHR_texture_transform"};
+  builder.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                                {"emissiveFactor", {1, 1, 1}},
+                                {"emissiveTexture", {{"index", 0}}}}};
+  builder.root["meshes"][0]["primitives"][0]["targets"] = Json::array();
+  const auto imported = scene_of(builder);
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredExtension), 2U);
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredFeature), 2U);
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 2U);
+  EXPECT_EQ(imported.scene.materials[0].emission, Rgb(0.0F));
+}
+
+TEST(Gltf, FarAwaySinglePrecisionIsListed) {
+  GltfBuilder builder;
+  builder.primitive({{"attributes", {{"POSITION", builder.vec3({1e6F, 0, 0, 1e6F + 1, 0, 0, 1e6F, 1, 0})}}}});
+  EXPECT_EQ(count_of(scene_of(builder), Warn::kCoarseCoordinates), 1U);
+}
+
+}  // namespace
+}  // namespace raykiln::render::test
