@@ -1,0 +1,142 @@
+// Every (pixel, block) is rendered and merged exactly once, in order, whatever workers do.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "raykiln/jobs/tile_plan.hpp"
+
+namespace raykiln::server {
+namespace {
+
+struct Case {
+  int width, height, tile;
+  std::vector<std::uint32_t> blocks;
+  double seconds_per_sample;
+};
+
+void run(const Case& c, unsigned seed) {
+  std::mt19937 random(seed);
+  TilePlan plan(c.width, c.height, c.tile, c.blocks, TaskLength{});
+  std::vector<std::size_t> merged(static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height));
+  std::vector<std::size_t> given(merged.size());
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(c.width) +
+           static_cast<std::size_t>(x);
+  };
+  const auto each = [&](const WorkItem& item, auto&& visit) {
+    for (const auto& part : item.parts) {
+      for (int y = part.rect.y0; y < part.rect.y1; ++y) {
+        for (int x = part.rect.x0; x < part.rect.x1; ++x) visit(at(x, y));
+      }
+    }
+  };
+  const std::uint64_t all = merged.size();
+  std::vector<WorkItem> flying;
+  std::uint64_t first_blocks = 0;
+  while (!plan.done()) {
+    const bool can_take = flying.size() < 5;
+    auto item = can_take ? plan.next() : std::nullopt;
+    if (item) {
+      ASSERT_LT(item->first_block, item->end_block);
+      if (item->attempt == 1) {
+        each(*item, [&](std::size_t p) {
+          ASSERT_EQ(given[p], item->first_block) << "in order";
+          ASSERT_EQ(merged[p], given[p]) << "only one pass in flight";
+          given[p] = item->end_block;
+          if (item->first_block == 0) ++first_blocks;
+        });
+        if (item->first_block > 0) {
+          ASSERT_EQ(first_blocks, all) << "the first block of all tiles comes first";
+        }
+      }
+      flying.push_back(std::move(*item));
+      continue;
+    }
+    ASSERT_FALSE(flying.empty()) << "stuck";
+    const std::size_t i = random() % flying.size();
+    const WorkItem chosen = flying[i];
+    flying.erase(flying.begin() + static_cast<std::ptrdiff_t>(i));
+    if (random() % 10 == 0) {
+      ASSERT_TRUE(plan.failed(chosen));
+      EXPECT_FALSE(plan.failed(chosen));
+      EXPECT_FALSE(plan.merged(chosen, 1.0)) << "late";
+      continue;
+    }
+    double samples = 0.0;
+    each(chosen, [&](std::size_t p) {
+      ASSERT_EQ(merged[p], chosen.first_block);
+      merged[p] = chosen.end_block;
+      for (std::size_t b = chosen.first_block; b < chosen.end_block; ++b) samples += c.blocks[b];
+    });
+    ASSERT_TRUE(plan.merged(chosen, samples * c.seconds_per_sample));
+    EXPECT_FALSE(plan.merged(chosen, 1.0)) << "twice";
+  }
+  for (const std::size_t blocks : merged) ASSERT_EQ(blocks, c.blocks.size());
+  EXPECT_EQ(plan.samples_done(), plan.samples_target());
+  EXPECT_EQ(plan.tiles_done(), plan.tiles());
+  EXPECT_EQ(plan.items_in_flight(), 0U);
+  EXPECT_FALSE(plan.next());
+}
+
+TEST(TilePlanProperty, EveryPixelAndBlockOnceAndInOrder) {
+  const Case cases[] = {{64, 48, 16, {1, 1, 2, 4, 8, 16, 16}, 1e-6},
+                        {100, 70, 64, {1, 1, 2, 4, 8, 16, 5}, 1e-4},
+                        {33, 7, 1, {1, 1, 2}, 1e-7},
+                        {300, 300, 1000, {1, 1, 2, 4}, 1e-5},
+                        {1, 1, 64, {1}, 1e-3},
+                        {50, 50, 7, {1, 1, 2, 4, 8, 16, 16, 16, 16}, 1e-9}};
+  for (const Case& c : cases) {
+    for (unsigned seed = 1; seed <= 5; ++seed) run(c, seed);
+  }
+}
+
+TEST(TilePlanProperty, TasksSettleAtTheirLength) {
+  for (const double cost : {2e-8, 1e-6, 1e-5}) {
+    TilePlan plan(640, 480, 64, std::vector<std::uint32_t>(64, 16), TaskLength{});
+    double late = 0.0;
+    int count = 0, all = 0;
+    while (auto item = plan.next()) {
+      double samples = 0.0;
+      for (const auto& part : item->parts) {
+        samples += static_cast<double>(part.rect.pixels() * 16 * (item->end_block - item->first_block));
+      }
+      if (++all > 200) {
+        late += samples * cost;
+        ++count;
+      }
+      ASSERT_TRUE(plan.merged(*item, samples * cost));
+    }
+    if (count == 0) continue;
+    const double mean = late / count;
+    EXPECT_LE(mean, 0.170) << cost;  // 1024 pixels of 16 samples are the least that is handed out
+    EXPECT_GE(mean, 0.001) << cost;
+    if (cost == 1e-6) {
+      EXPECT_NEAR(mean, 0.025, 0.020);
+    }
+  }
+}
+
+TEST(TilePlanProperty, AbandonedPlansGiveAndTakeNothing) {
+  TilePlan plan(64, 64, 32, {1, 1}, TaskLength{});
+  const auto item = plan.next();
+  plan.abandon();
+  EXPECT_FALSE(plan.merged(*item, 1.0));
+  EXPECT_FALSE(plan.failed(*item));
+  EXPECT_FALSE(plan.next());
+  EXPECT_EQ(plan.samples_done(), 0U);
+}
+
+TEST(TilePlanProperty, TilesCoverTheFilmOnceCentreFirst) {
+  const auto tiles = cut_tiles(130, 70, 32);
+  std::vector<int> seen(130 * 70);
+  for (const TileRect& r : tiles) {
+    for (int y = r.y0; y < r.y1; ++y) {
+      for (int x = r.x0; x < r.x1; ++x) ++seen[static_cast<std::size_t>(y * 130 + x)];
+    }
+  }
+  for (const int n : seen) ASSERT_EQ(n, 1);
+  EXPECT_LE(std::abs(tiles.front().x0 + tiles.front().x1 - 130), 32);
+}
+
+}  // namespace
+}  // namespace raykiln::server

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "raykiln/jobs/admission.hpp"
+#include "raykiln/jobs/job_snapshot.hpp"
+
+namespace raykiln::server {
+namespace {
+
+JobRequest good() {
+  JobRequest request;
+  request.scene = std::string(64, 'a');
+  return request;
+}
+
+TEST(JobRequest, IsCheckedAgainstEveryLimit) {
+  EXPECT_TRUE(validate(good(), {}));
+  const std::pair<const char*, void (*)(JobRequest&)> rows[] = {
+      {"/scene", [](JobRequest& r) { r.scene = std::string(63, 'a'); }},
+      {"/name", [](JobRequest& r) { r.name = std::string(1, '\n'); }},
+      {"/name", [](JobRequest& r) { r.name = std::string(201, 'x'); }},
+      {"/width", [](JobRequest& r) { r.width = 0; }},
+      {"/height", [](JobRequest& r) { r.height = 1'000'000; }},
+      {"/stop/samples", [](JobRequest& r) { r.stop.samples = 0; }},
+      {"/max_depth", [](JobRequest& r) { r.max_depth = 65; }},
+      {"/branches", [](JobRequest& r) { r.branches = 16; }},
+      {"/tile", [](JobRequest& r) { r.tile = 0; }},
+      {"/tile", [](JobRequest& r) { r.tile = 1, r.width = 16'384, r.height = 16'384; }},
+      {"/priority", [](JobRequest& r) { r.priority = 101; }},
+      {"/camera", [](JobRequest& r) { r.camera = -1; }},
+      {"/camera", [](JobRequest& r) { r.camera = std::string(); }},
+      {"/camera/look_at", [](JobRequest& r) { r.camera = OwnCamera{}; }},
+      {"/camera/up", [](JobRequest& r) { r.camera = OwnCamera{{}, {0, 2, 0}, {0, 1, 0}, 40}; }},
+      {"/camera/eye", [](JobRequest& r) { r.camera = OwnCamera{{NAN, 0, 0}, {0, 0, 1}, {0, 1, 0}, 40}; }},
+      {"/camera/fov_deg", [](JobRequest& r) { r.camera = OwnCamera{{}, {0, 0, 1}, {0, 1, 0}, NAN}; }},
+  };
+  for (const auto& [where, spoil] : rows) {
+    JobRequest request = good();
+    spoil(request);
+    const Status status = validate(request, {});
+    ASSERT_FALSE(status) << where;
+    EXPECT_EQ(status.error().where, where);
+    EXPECT_EQ(status.error().code, "invalid_request");
+  }
+}
+
+TEST(JobRequest, DigestTellsRequestsApart) {
+  JobRequest other = good();
+  EXPECT_EQ(request_digest(good()), request_digest(other));
+  other.seed = 1;
+  EXPECT_NE(request_digest(good()), request_digest(other));
+  other = good();
+  other.camera = std::string("0");
+  EXPECT_NE(request_digest(good()), request_digest(other)) << "a name is not an index";
+}
+
+TEST(JobRecord, ReadsBack) {
+  JobSnapshot job;
+  job.id = "j_1";
+  job.request = good();
+  job.request.name = "two words\\";
+  job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3};
+  job.request.seed = (1ULL << 53) - 1;
+  job.state = JobState::kFailed;
+  job.revision = 12;
+  job.image_revision = 12;
+  job.created = WallTime(std::chrono::milliseconds(1'700'000'000'123));
+  job.started = job.created;
+  job.statistics.bad_samples = {{1, 2, 3}, {4, 5, 6}};
+  job.statistics.idle_seconds = 0.1;
+  job.progress.samples_done = 99;
+  job.warnings = {{"a", "b", "c"}, {"d", "", ""}};
+  job.error = Error{ErrorKind::kInternal, "render_failed", "why", "where"};
+  const auto back = decode_job(encode_job(job));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(encode_job(*back), encode_job(job));
+  EXPECT_EQ(request_digest(back->request), request_digest(job.request));
+  EXPECT_EQ(back->error->message, "why");
+  EXPECT_EQ(back->statistics.bad_samples.at(1).sample, 6U);
+  EXPECT_FALSE(back->finished);
+  EXPECT_FALSE(decode_job("rubbish"));
+}
+
+TEST(Admission, SaysWhenToComeBack) {
+  EXPECT_TRUE(admit(9, 10, 60.0, 1));
+  const Status full = admit(10, 10, 60.0, 3);
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error().kind, ErrorKind::kTooMany);
+  EXPECT_EQ(full.error().retry_after_s, 20);
+  EXPECT_EQ(admit(10, 10, 0.0, 0).error().retry_after_s, 1);
+  EXPECT_EQ(admit(10, 10, 1e9, 1).error().retry_after_s, 600);
+}
+
+}  // namespace
+}  // namespace raykiln::server

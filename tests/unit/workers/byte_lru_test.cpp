@@ -1,0 +1,27 @@
+#include "byte_lru.hpp"
+
+#include <gtest/gtest.h>
+
+namespace raykiln::server {
+namespace {
+
+TEST(ByteLru, DropsTheLeastRecentlyUsedBeyondItsBytes) {
+  ByteLru<int> lru(100);
+  lru.insert("a", 1, 40);
+  lru.insert("b", 2, 40);
+  EXPECT_EQ(lru.use("a"), 1);
+  lru.insert("c", 3, 40);
+  EXPECT_FALSE(lru.contains("b"));
+  EXPECT_TRUE(lru.contains("a"));
+  EXPECT_EQ(lru.bytes(), 80U);
+  lru.insert("a", 4, 10);
+  EXPECT_EQ(lru.bytes(), 50U);
+  lru.insert("huge", 5, 1000);
+  EXPECT_EQ(lru.use("huge"), 5) << "what is being used now stays";
+  EXPECT_EQ(lru.bytes(), 1000U);
+  lru.erase("huge");
+  EXPECT_EQ(lru.bytes(), 0U);
+}
+
+}  // namespace
+}  // namespace raykiln::server
