@@ -74,7 +74,7 @@ TEST_F(ArchiveTest, UnpacksFilesUnderNumbers) {
 }
 
 TEST_F(ArchiveTest, RefusesNamesThatLeave) {
-  for (const char* name : {"../a", "/etc/passwd", "a/../../b", "a\\b", "C:/x"}) {
+  for (const char* name : {"../a", "/etc/passwd", "a/../../b", "..\\a", "C:/x"}) {
     write_zip(zip, {{name, "x"}});
     EXPECT_EQ(code(), "unsafe_name") << name;
   }

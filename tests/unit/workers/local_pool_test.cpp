@@ -55,7 +55,7 @@ TEST(LocalPool, RunnersWorkAfterStop) {
 
 TileTask task_of(const std::shared_ptr<const render::PreparedScene>& scene) {
   TileTask task;
-  task.job = "j";
+  task.job = std::string(1, 'j');
   task.scene = scene;
   task.settings.width = task.settings.height = 32;
   task.item.id = 1;
