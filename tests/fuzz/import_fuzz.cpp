@@ -14,6 +14,12 @@
 namespace raykiln::render::test {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr std::uint64_t kIterations = 4'000;  // each costs several times more
+#else
+constexpr std::uint64_t kIterations = 20'000;
+#endif
+
 std::uint64_t from_environment(const char* name, std::uint64_t fallback) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::strtoull(text, nullptr, 10) : fallback;
@@ -92,7 +98,7 @@ void check(const ImportResult& result) {
 // `target` is the file that is mutated, `others` are other texts to splice from.
 void fuzz(const Texts& base, const std::string& target, const std::vector<std::string>& others) {
   const std::uint64_t seed = from_environment("RAYKILN_FUZZ_SEED", 20'250'101);
-  const std::uint64_t iterations = from_environment("RAYKILN_FUZZ_ITERATIONS", 20'000);
+  const std::uint64_t iterations = from_environment("RAYKILN_FUZZ_ITERATIONS", kIterations);
   std::cout << "seed " << seed << ", " << iterations << " iterations\n";
   const ImportOptions options = small_limits();
   ASSERT_TRUE(std::holds_alternative<ImportedScene>(import_texts(base, options)));

@@ -1,5 +1,6 @@
 #include "line_reader.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -41,7 +42,9 @@ bool LineReader::refill() {
                 "the line is longer than " + std::to_string(max_line) + " bytes",
                 "check that this is a text file with line breaks");
   }
-  if (buffer_.size() < end_ + kBlockBytes) buffer_.resize(end_ + kBlockBytes);
+  const auto block =  // small files need small buffers; one byte more shows the end
+      static_cast<std::size_t>(std::min<std::uint64_t>(kBlockBytes, file_->size() + 1));
+  if (buffer_.size() < end_ + block) buffer_.resize(end_ + block);
   const auto got = file_->read({buffer_.data() + end_, buffer_.size() - end_});
   if (!got) {
     return diagnostics_->fail(ImportErrorCode::kFileUnreadable, "the file cannot be read", name_);

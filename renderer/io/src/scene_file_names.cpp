@@ -42,6 +42,11 @@ std::optional<std::string> resolve(std::string path) {
   return joined;
 }
 
+// What is left and one byte more, to see the end; in blocks, so that a stop is noticed.
+std::size_t block_for(std::uint64_t left) {
+  return static_cast<std::size_t>(std::min<std::uint64_t>(kBlockBytes, left + 1));
+}
+
 }  // namespace
 
 std::optional<std::string> find_beside(const SceneFiles& files, std::string_view from,
@@ -84,12 +89,13 @@ std::optional<std::string> read_whole(const SceneFiles& files, const std::string
   const auto file = open_limited(files, name, max_bytes, diagnostics);
   if (file == nullptr) return std::nullopt;
   std::string bytes;
-  bytes.reserve(file->size());  // bounded by max_bytes, and a file's size is real
+  bytes.reserve(file->size() + 1);  // bounded by max_bytes, and a file's size is real
   while (true) {
     if (!diagnostics.may_go_on()) return std::nullopt;
     const std::size_t have = bytes.size();
-    bytes.resize(have + kBlockBytes);
-    const auto got = file->read({bytes.data() + have, kBlockBytes});
+    const std::size_t block = block_for(file->size() - std::min<std::uint64_t>(have, file->size()));
+    bytes.resize(have + block);
+    const auto got = file->read({bytes.data() + have, block});
     bytes.resize(have + got.value_or(0));
     if (!got || bytes.size() > max_bytes) {
       diagnostics.fail(got ? ImportErrorCode::kFileTooLarge : ImportErrorCode::kFileUnreadable,
