@@ -92,7 +92,9 @@ int TilePlan::pick_rows(const Tile& tile) const {
       // Bands of equal size, so that none is left over that is hardly worth its overhead.
       const double bands = std::ceil(static_cast<double>(pixels) * one / length_.target_seconds);
       const double share = std::ceil(static_cast<double>(pixels) / bands);
-      most = std::min(most, std::max(length_.least_stream, static_cast<std::uint64_t>(share)));
+      const std::uint64_t samples = samples_in(tile.next_block, tile.pass_end);
+      const std::uint64_t least = (length_.least_stream + samples - 1) / samples;
+      most = std::min(most, std::max(least, static_cast<std::uint64_t>(share)));
     }
   }
   if (pixels <= most) return rows;

@@ -108,7 +108,7 @@ TEST(TilePlanProperty, TasksSettleAtTheirLength) {
     }
     if (count == 0) continue;
     const double mean = late / count;
-    EXPECT_LE(mean, 0.170) << cost;  // 1024 pixels of 16 samples are the least that is handed out
+    EXPECT_LE(mean, 0.050) << cost;
     EXPECT_GE(mean, 0.001) << cost;
     if (cost == 1e-6) {
       EXPECT_NEAR(mean, 0.025, 0.020);

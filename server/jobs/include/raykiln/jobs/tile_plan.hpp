@@ -35,7 +35,7 @@ struct WorkItem {
 /// How long a task is meant to last, and how much memory its result may take.
 struct TaskLength {
   double low_seconds = 0.005, target_seconds = 0.025, high_seconds = 0.050;
-  std::uint64_t least_stream = 1024;             ///< pixels a band keeps, for long ray streams
+  std::uint64_t least_stream = 1024;             ///< samples a band keeps, for long ray streams
   std::uint64_t max_pixel_blocks = 64 * 1024;    ///< pixels times blocks of one task's result
 };
 
