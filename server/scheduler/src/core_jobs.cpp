@@ -5,7 +5,7 @@
 #include "core.hpp"
 #include "raykiln/base/ids.hpp"
 #include "raykiln/jobs/admission.hpp"
-#include "render_inputs.hpp"
+#include "raykiln/scheduler/render_inputs.hpp"
 
 namespace raykiln::server {
 namespace {

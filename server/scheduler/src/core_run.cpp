@@ -4,7 +4,7 @@
 #include <new>
 
 #include "core.hpp"
-#include "render_inputs.hpp"
+#include "raykiln/scheduler/render_inputs.hpp"
 
 namespace raykiln::server {
 namespace {

@@ -1,4 +1,4 @@
-#include "render_inputs.hpp"
+#include "raykiln/scheduler/render_inputs.hpp"
 
 #include <algorithm>
 #include <numbers>
