@@ -78,8 +78,8 @@ class Upload {
 /// How an upload's body is cut into files.
 struct UploadPlan {
   std::unique_ptr<Upload> upload;
-  std::string multipart_boundary;  ///< empty: the body is one file
-  std::uint64_t max_bytes = 0;     ///< of the body
+  bool multipart = false;       ///< multipart/form-data: every part is a file; else the body is one
+  std::uint64_t max_bytes = 0;  ///< of the body
 };
 
 /// The head alone decides: an early answer, or where the bytes go.

@@ -1,0 +1,116 @@
+#include <array>
+#include <charconv>
+
+#include "await.hpp"
+#include "query.hpp"
+#include "raykiln/api/api.hpp"
+#include "raykiln/api/etag.hpp"
+#include "raykiln/image/encode.hpp"
+
+namespace raykiln::server {
+namespace {
+
+constexpr double kMaxStops = 32.0;
+
+/// What a client may ask of a picture.
+struct ImageQuery {
+  bool exr = false;
+  double exposure_stops = 0.0;
+  std::string layer = "beauty";
+};
+
+std::variant<ImageQuery, Problem> parse_image_query(const Request& request) {
+  if (auto problem = check_query(request, {"format", "exposure", "rev", "layer"})) return *problem;
+  ImageQuery query;
+  if (const auto* format = find_value(request.query, "format")) {
+    if (*format != "png" && *format != "exr") return invalid_parameter("format", "must be png or exr");
+    query.exr = *format == "exr";
+  }
+  const auto stops = query_number(request, "exposure", -kMaxStops, kMaxStops, 0.0);
+  if (!stops) return invalid_parameter("exposure", "must be a number of stops from -32 to 32");
+  // EXR holds radiance as it is: one copy serves all exposures.
+  query.exposure_stops = query.exr || *stops == 0.0 ? 0.0 : *stops;
+  if (!query_natural(request, "rev", 0, UINT64_MAX, 0)) {
+    return invalid_parameter("rev", "must be a revision number");
+  }
+  if (const auto* layer = find_value(request.query, "layer")) query.layer = *layer;
+  if (query.layer != "beauty") return invalid_parameter("layer", "must be beauty");
+  return query;
+}
+
+std::string shortest(double value) {
+  std::array<char, 40> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string image_key(const JobImage& image, const ImageQuery& query) {
+  return image.job + '-' + std::to_string(image.revision) + '-' + (query.exr ? "exr" : "png") + '-' +
+         shortest(query.exposure_stops) + '-' + query.layer;
+}
+
+std::map<std::string, std::string> exr_attributes(const JobImage& image, const std::string& version) {
+  return {{"raykiln:scene", image.scene},
+          {"raykiln:job", image.job},
+          {"raykiln:revision", std::to_string(image.revision)},
+          {"raykiln:light_model", std::string(name(image.request.light_model))},
+          {"raykiln:seed", std::to_string(image.request.seed)},
+          {"raykiln:samples", shortest(image.samples_per_pixel)},
+          {"raykiln:max_depth", std::to_string(image.request.max_depth)},
+          {"raykiln:seconds", shortest(image.render_seconds)},
+          {"raykiln:version", version}};
+}
+
+Result<std::string> encode(const JobImage& image, const ImageQuery& query,
+                           const std::string& version) {
+  auto encoded = query.exr ? render::encode_exr(image.image, exr_attributes(image, version))
+                           : render::encode_png(image.image, query.exposure_stops);
+  if (const auto* error = std::get_if<render::EncodeError>(&encoded)) {
+    return Error{ErrorKind::kInternal, "internal", error->message, {}};
+  }
+  const auto& bytes = std::get<render::Bytes>(encoded);
+  return std::string(bytes.begin(), bytes.end());
+}
+
+}  // namespace
+
+Answer Api::get_image(const Request& request) {
+  if (auto problem = check_job_id(request)) return to_response(*problem);
+  const auto parsed = parse_image_query(request);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) return to_response(*problem);
+  const auto& query = std::get<ImageQuery>(parsed);
+
+  const auto found = await<JobImagePtr>([&](auto reply) {
+    parts_.scheduler.image(path_parameter(request, "job"), query.layer, std::move(reply));
+  });
+  if (!found) return to_response(problem_of(found.error()));
+  const JobImage& image = **found;
+  const std::string key = image_key(image, query);
+  Response response;
+  response.headers = {{"ETag", '"' + key + '"'},
+                      {"Raykiln-Revision", std::to_string(image.revision)},
+                      {"Cache-Control", "no-cache"}};
+  const auto* known = find_value(request.headers, "if-none-match");
+  if (known != nullptr && etag_matches(*known, '"' + key + '"')) {
+    response.status = 304;
+    return response;
+  }
+  const auto bytes = images_.get(key, [&] {
+    const auto begun = std::chrono::steady_clock::now();
+    auto encoded = encode(image, query, config_.version);
+    const double seconds = seconds_between(begun, std::chrono::steady_clock::now());
+    parts_.metrics
+        .histogram("raykiln_image_encode_seconds", "Encoding one picture",
+                   {0.005, 0.02, 0.1, 0.5, 2, 10}, {{"format", query.exr ? "exr" : "png"}})
+        .observe(seconds);
+    return encoded;
+  });
+  if (!bytes) return to_response(problem_of(bytes.error()));
+  response.content_type = query.exr ? "image/x-exr" : "image/png";
+  response.headers.emplace_back("Content-Disposition", "inline; filename=\"" + image.job +
+                                                           (query.exr ? ".exr\"" : ".png\""));
+  response.body = *bytes;
+  return response;
+}
+
+}  // namespace raykiln::server

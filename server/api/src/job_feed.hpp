@@ -1,0 +1,62 @@
+// The events of one job for one client.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "raykiln/api/job_json.hpp"
+#include "raykiln/api/message.hpp"
+#include "raykiln/events/event_hub.hpp"
+
+namespace raykiln::server {
+
+/// Holds wake-ups that come before the session listens, and cuts the tie when it has gone.
+class WakeRelay {
+ public:
+  void wake() {
+    const std::lock_guard lock(mutex_);
+    if (target_) target_();
+    else early_ = true;
+  }
+  /// `target` must only post (it is called under the relay's lock, which nothing else takes).
+  void connect(std::function<void()> target) {
+    const std::lock_guard lock(mutex_);
+    target_ = std::move(target);
+    if (std::exchange(early_, false)) target_();
+  }
+  void disconnect() {
+    const std::lock_guard lock(mutex_);
+    target_ = nullptr;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::function<void()> target_;
+  bool early_ = false;
+};
+
+class JobFeed final : public EventFeed {
+ public:
+  JobFeed(std::shared_ptr<WakeRelay> relay, std::unique_ptr<Subscription> subscription)
+      : relay_(std::move(relay)), subscription_(std::move(subscription)) {}
+  ~JobFeed() override { relay_->disconnect(); }
+  JobFeed(const JobFeed&) = delete;
+  JobFeed& operator=(const JobFeed&) = delete;
+
+  void start(std::function<void()> wake) override { relay_->connect(std::move(wake)); }
+
+  [[nodiscard]] FeedStep poll() override {
+    const SnapshotPtr job = subscription_->take();
+    if (!job) return {};
+    return {"id: " + std::to_string(job->revision) + "\nevent: job\ndata: " + job_json(*job) + "\n\n",
+            is_final(job->state)};
+  }
+
+ private:
+  std::shared_ptr<WakeRelay> relay_;
+  std::unique_ptr<Subscription> subscription_;
+};
+
+}  // namespace raykiln::server

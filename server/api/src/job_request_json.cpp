@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <array>
+
+#include "job_request_value.hpp"
+#include "json_fields.hpp"
+#include "raykiln/api/job_json.hpp"
+#include "raykiln/base/ids.hpp"
+
+namespace raykiln::server {
+namespace {
+
+using nlohmann::json;
+using Need = FieldReader::Need;
+using Errors = std::vector<FieldError>;
+
+std::uint64_t as_bound(int limit) { return static_cast<std::uint64_t>(limit); }
+
+/// A field that names one of a few values.
+template <class Value>
+void read_named(FieldReader& reader, const char* name, const char* choices,
+                std::optional<Value> (*parse)(std::string_view), Value& target) {
+  const auto text = reader.text(name, {0, 100});
+  if (!text) return;
+  if (const auto value = parse(*text)) target = *value;
+  else reader.error(name, "invalid_value", std::string("must be one of ") + choices);
+}
+
+void read_integer(FieldReader& reader, const char* name, FieldReader::Bounds bounds, Need need,
+                  int& target) {
+  if (const auto value = reader.natural(name, bounds, need)) target = static_cast<int>(*value);
+}
+
+std::array<double, 3> as_array(const std::vector<double>& list) {
+  return {list.at(0), list.at(1), list.at(2)};
+}
+
+OwnCamera read_own_camera(const json& object, std::string pointer, Errors& errors) {
+  OwnCamera camera;
+  FieldReader reader(object, std::move(pointer), errors);
+  if (const auto eye = reader.numbers("eye", 3, Need::kRequired)) camera.eye = as_array(*eye);
+  if (const auto at = reader.numbers("look_at", 3, Need::kRequired)) camera.look_at = as_array(*at);
+  if (const auto up = reader.numbers("up", 3)) camera.up = as_array(*up);
+  if (const auto fov = reader.number("fov_deg")) {
+    camera.fov_deg = *fov;
+    if (!(*fov > 0.0 && *fov < 180.0)) {
+      reader.error("fov_deg", "out_of_range", "must lie between 0 and 180, both left out");
+    }
+  }
+  reader.finish();
+  return camera;
+}
+
+void read_camera(FieldReader& reader, Errors& errors, JobRequest& request) {
+  const json* value = reader.any("camera");
+  if (value == nullptr) return;
+  if (value->is_object()) {
+    request.camera = read_own_camera(*value, reader.pointer_to("camera"), errors);
+  } else if (value->is_string()) {
+    if (const auto name = reader.text("camera", {1, 200})) request.camera = *name;
+  } else if (value->is_number()) {
+    if (const auto index = reader.natural("camera", {0, 1'000'000})) {
+      request.camera = static_cast<int>(*index);
+    }
+  } else {
+    reader.error("camera", "wrong_type", "must be an index, a name or an object with eye and look_at");
+  }
+}
+
+void read_stop(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
+  const json* value = reader.any("stop", Need::kRequired);
+  if (value == nullptr) return;
+  if (!value->is_object()) {
+    return reader.error("stop", "wrong_type", "must be an object such as {\"samples\": 64}");
+  }
+  FieldReader stop(*value, reader.pointer_to("stop"), errors);
+  if (const auto samples = stop.natural("samples", {1, limits.max_samples}, Need::kRequired)) {
+    request.stop.samples = *samples;
+  }
+  stop.finish();
+}
+
+JobRequest read_request(const json& object, const JobLimits& limits, Errors& errors) {
+  JobRequest request;
+  FieldReader reader(object, "", errors);
+  if (const auto scene = reader.text("scene", {0, 100}, Need::kRequired)) {
+    request.scene = *scene;
+    if (!is_sha256_hex(*scene)) {
+      reader.error("scene", "invalid_value", "must be 64 lower-case hexadecimal digits");
+    }
+  }
+  if (const auto name = reader.text("name", {0, limits.max_name_bytes})) request.name = *name;
+  read_camera(reader, errors, request);
+  const FieldReader::Bounds side{1, as_bound(limits.max_side)};
+  read_integer(reader, "width", side, Need::kRequired, request.width);
+  read_integer(reader, "height", side, Need::kRequired, request.height);
+  read_stop(reader, limits, errors, request);
+  read_named(reader, "light_model", "seed", light_model_named, request.light_model);
+  read_integer(reader, "max_depth", {0, as_bound(limits.max_depth)}, Need::kOptional, request.max_depth);
+  read_integer(reader, "branches", {1, as_bound(limits.max_branches)}, Need::kOptional, request.branches);
+  if (const auto seed = reader.natural("seed", {0, 9007199254740991U})) request.seed = *seed;
+  read_named(reader, "pixel_mode", "random, centre", pixel_mode_named, request.pixel_mode);
+  read_named(reader, "direction_sampling", "bsdf, uniform_sphere", direction_sampling_named,
+             request.direction_sampling);
+  if (const auto on = reader.boolean("emitter_sampling")) request.emitter_sampling = *on;
+  read_integer(reader, "tile", {1, as_bound(limits.max_tile)}, Need::kOptional, request.tile);
+  read_integer(reader, "priority", {1, as_bound(limits.max_priority)}, Need::kOptional, request.priority);
+  reader.finish();
+  return request;
+}
+
+}  // namespace
+
+std::variant<JobRequest, Problem> parse_job_request(std::string_view body, const JobLimits& limits) {
+  Errors errors;
+  auto parsed = parse_json(body, errors);
+  if (auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+  const json& value = std::get<json>(parsed);
+  JobRequest request;
+  if (value.is_object()) request = read_request(value, limits, errors);
+  else errors.push_back({"", "wrong_type", "must be an object"});
+  if (errors.empty()) return request;
+  Problem problem{422, "invalid_request",
+                  errors.size() == 1 ? errors[0].pointer + ' ' + errors[0].detail
+                                     : std::to_string(errors.size()) + " fields are wrong"};
+  problem.errors = std::move(errors);
+  return problem;
+}
+
+nlohmann::ordered_json job_request_value(const JobRequest& request) {
+  nlohmann::ordered_json camera;
+  if (const auto* index = std::get_if<int>(&request.camera)) camera = *index;
+  else if (const auto* by_name = std::get_if<std::string>(&request.camera)) camera = *by_name;
+  else {
+    const auto& own = std::get<OwnCamera>(request.camera);
+    camera = {{"eye", own.eye}, {"look_at", own.look_at}, {"up", own.up}, {"fov_deg", own.fov_deg}};
+  }
+  return {{"scene", request.scene},
+          {"name", request.name},
+          {"camera", std::move(camera)},
+          {"width", request.width},
+          {"height", request.height},
+          {"stop", {{"samples", request.stop.samples}}},
+          {"light_model", name(request.light_model)},
+          {"max_depth", request.max_depth},
+          {"branches", request.branches},
+          {"seed", request.seed},
+          {"pixel_mode", name(request.pixel_mode)},
+          {"direction_sampling", name(request.direction_sampling)},
+          {"emitter_sampling", request.emitter_sampling},
+          {"tile", request.tile},
+          {"priority", request.priority}};
+}
+
+std::string job_request_json(const JobRequest& request) {
+  return job_request_value(request).dump(-1, ' ', false,
+                                         nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,65 @@
+// The client's side: schema Job read back, leniently (fields may be added), but typed.
+#include <nlohmann/json.hpp>
+
+#include "raykiln/api/job_json.hpp"
+
+namespace raykiln::server {
+namespace {
+
+using nlohmann::json;
+
+std::string error_text(const json& error) {
+  std::string text = error.at("code").get<std::string>() + ": " + error.at("detail").get<std::string>();
+  const std::string where = error.value("where", "");
+  return where.empty() ? text : text + " (" + where + ')';
+}
+
+/// Throws json::exception when something that a job must have is missing.
+JobView view_of(const json& job) {
+  JobView view;
+  view.id = job.at("id").get<std::string>();
+  view.scene = job.at("scene").get<std::string>();
+  view.name = job.at("name").get<std::string>();
+  view.state = job.at("state").get<std::string>();
+  view.revision = job.at("revision").get<std::uint64_t>();
+  const json& progress = job.at("progress");
+  view.fraction = progress.at("fraction").get<double>();
+  view.samples_done = progress.at("samples_done").get<double>();
+  view.samples_target = progress.at("samples_target").get<double>();
+  view.elapsed_seconds = job.at("elapsed_seconds").get<double>();
+  if (const json& left = job.at("remaining_seconds"); left.is_number()) {
+    view.remaining_seconds = left.get<double>();
+  }
+  view.rays_per_second = job.at("statistics").at("rays_per_second").get<double>();
+  view.has_image = !job.at("image").is_null();
+  if (const json& prepare = job.at("prepare"); prepare.is_object()) {
+    view.stage = prepare.at("stage").get<std::string>();
+    view.fraction = prepare.at("fraction").get<double>();
+  }
+  if (const json& error = job.at("error"); error.is_object()) view.error = error_text(error);
+  return view;
+}
+
+}  // namespace
+
+std::optional<JobView> parse_job_view(std::string_view text) {
+  try {
+    return view_of(json::parse(text.begin(), text.end()));
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<JobPageView> parse_job_page(std::string_view text) {
+  try {
+    const json page = json::parse(text.begin(), text.end());
+    JobPageView view;
+    for (const json& job : page.at("jobs")) view.jobs.push_back(view_of(job));
+    if (page.at("next_cursor").is_string()) view.next_cursor = page["next_cursor"].get<std::string>();
+    return view;
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace raykiln::server
