@@ -23,7 +23,4 @@ struct Target {
 /// character: no later step has to wonder what such a path means.
 [[nodiscard]] std::optional<Target> parse_target(std::string_view text);
 
-/// Decodes %XX; nothing when an escape is bad. '+' stays '+'.
-[[nodiscard]] std::optional<std::string> percent_decode(std::string_view text);
-
 }  // namespace raykiln::server
