@@ -1,0 +1,55 @@
+// The command line program: its options, and one function per command.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raykiln/app/exit_code.hpp"
+#include "raykiln/jobs/job_request.hpp"
+
+namespace raykiln::server {
+
+/// What a picture is to be like; shared by `render` and `submit`.
+struct PictureOptions {
+  JobRequest request;  ///< without the scene
+  std::string camera;  ///< name or index; empty: the first
+  double exposure_stops = 0.0;
+};
+
+struct CliOptions {
+  std::string command;
+  std::string server = "http://127.0.0.1:8080";
+  bool json = false;
+  bool quiet = false;
+  std::filesystem::path scene;
+  std::vector<std::filesystem::path> outputs;
+  PictureOptions picture;
+  int threads = 0;
+  bool wait = false;
+  std::string job;
+  std::string state;  ///< filter of `jobs`
+  std::string idempotency_key;
+};
+
+struct ParsedCli {
+  CliOptions options;
+  int exit_code = -1;  ///< -1: run
+};
+[[nodiscard]] ParsedCli parse_cli_options(int argc, const char* const* argv);
+
+[[nodiscard]] ExitCode run_cli(const CliOptions& options);
+
+/// Renders without a daemon.
+[[nodiscard]] ExitCode render_command(const CliOptions& options);
+
+[[nodiscard]] ExitCode submit_command(const CliOptions& options);
+[[nodiscard]] ExitCode watch_command(const CliOptions& options);
+[[nodiscard]] ExitCode fetch_command(const CliOptions& options);
+[[nodiscard]] ExitCode cancel_command(const CliOptions& options);
+[[nodiscard]] ExitCode scenes_command(const CliOptions& options);
+[[nodiscard]] ExitCode jobs_command(const CliOptions& options);
+[[nodiscard]] ExitCode health_command(const CliOptions& options);
+
+}  // namespace raykiln::server

@@ -1,0 +1,37 @@
+// One exit code per outcome, for scripts; printed by --help.
+#pragma once
+
+#include <string>
+
+namespace raykiln::server {
+
+enum class ExitCode : int {
+  kOk = 0,
+  kFailure = 1,         ///< the machine: a file cannot be written, memory, a fault of this program
+  kUsage = 2,           ///< the command line is wrong
+  kScene = 3,           ///< the scene is wrong or cannot be read
+  kJobFailed = 4,
+  kJobCancelled = 5,
+  kNoServer = 6,        ///< the server cannot be reached, or went away
+  kRefused = 7,         ///< the server refused the request
+  kNotFound = 8,        ///< no such job, scene or picture
+  kBusy = 9,            ///< the server cannot take more now: try later
+};
+
+[[nodiscard]] inline int to_int(ExitCode code) { return static_cast<int>(code); }
+
+[[nodiscard]] inline std::string exit_code_table() {
+  return "Exit codes:\n"
+         "  0  done\n"
+         "  1  failure of this machine (file cannot be written, out of memory, internal fault)\n"
+         "  2  wrong command line\n"
+         "  3  the scene is wrong or cannot be read\n"
+         "  4  the job failed\n"
+         "  5  the job was cancelled\n"
+         "  6  the server cannot be reached\n"
+         "  7  the server refused the request\n"
+         "  8  no such job, scene or picture\n"
+         "  9  the server is busy or stopping; try again later\n";
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,25 @@
+// A whole job in this process: import, tree, tiles on the pool, film.
+#pragma once
+
+#include <functional>
+
+#include "raykiln/app/progress.hpp"
+#include "raykiln/app/scene_package.hpp"
+#include "raykiln/image/film.hpp"
+#include "raykiln/jobs/job_snapshot.hpp"
+#include "raykiln/workers/local_pool.hpp"
+
+namespace raykiln::server {
+
+struct LocalPicture {
+  render::Image image;
+  JobSnapshot job;  ///< completed, with statistics and warnings; its id is empty
+};
+
+/// Errors: those of the intake (the scene is wrong), "invalid_request" (settings, camera), and
+/// "worker_failed". `scratch`: an existing folder for unpacking.
+[[nodiscard]] Result<LocalPicture> render_locally(
+    const ScenePackage& package, const JobRequest& request, LocalPool& pool,
+    const std::filesystem::path& scratch, const std::function<void(const ProgressState&)>& progress);
+
+}  // namespace raykiln::server

@@ -1,0 +1,140 @@
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <iostream>
+
+#include "raykiln/app/cli.hpp"
+
+namespace raykiln::server {
+namespace {
+
+/// "640x480".
+std::string read_size(const std::string& text, JobRequest& request) {
+  const auto* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, request.width);
+  if (first.ec != std::errc{} || first.ptr == end || *first.ptr != 'x') return "--size wants WxH";
+  const auto second = std::from_chars(first.ptr + 1, end, request.height);
+  if (second.ec != std::errc{} || second.ptr != end) return "--size wants WxH";
+  return {};
+}
+
+/// Digits are an index, all else is a name.
+CameraChoice camera_choice(const std::string& text) {
+  int index = 0;
+  const auto* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, index);
+  if (text.empty() || (error == std::errc{} && stop == end && index >= 0)) return index;
+  return text;
+}
+
+void add_picture_options(CLI::App& command, CliOptions& options) {
+  const JobLimits limits;
+  JobRequest& request = options.picture.request;
+  command.add_option("SCENE", options.scene, ".obj, .gltf, .glb, .zip or a folder")->required();
+  command.add_option("--samples", request.stop.samples, "samples per pixel")
+      ->check(CLI::Range(std::uint64_t{1}, limits.max_samples))
+      ->capture_default_str();
+  command.add_option("--depth", request.max_depth, "reflections after the first hit")
+      ->check(CLI::Range(0, limits.max_depth))
+      ->capture_default_str();
+  command.add_option_function<std::string>(
+      "--size",
+      [&request](const std::string& text) {
+        if (auto error = read_size(text, request); !error.empty()) throw CLI::ValidationError(error);
+      },
+      "WxH in pixels (640x480)");
+  command.add_option("--seed", request.seed, "of the random numbers")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}))
+      ->capture_default_str();
+  command.add_option("--camera", options.picture.camera, "name or index of a camera of the scene");
+  command.add_option("--tile", request.tile, "edge of a tile in pixels; changes no pixel")
+      ->check(CLI::Range(1, limits.max_tile))
+      ->capture_default_str();
+  command.add_option("--exposure", options.picture.exposure_stops, "stops, for PNG")
+      ->check(CLI::Range(-32.0, 32.0))
+      ->capture_default_str();
+}
+
+void add_output(CLI::App& command, CliOptions& options, bool required) {
+  auto* option = command.add_option("-o,--output", options.outputs,
+                                    "picture file, .exr or .png; may be given twice");
+  if (required) option->required();
+}
+
+void add_job(CLI::App& command, CliOptions& options) {
+  command.add_option("JOB", options.job, "job id")->required();
+}
+
+void add_commands(CLI::App& app, CliOptions& options) {
+  auto* render = app.add_subcommand("render", "render a scene here, without a server");
+  add_picture_options(*render, options);
+  add_output(*render, options, true);
+  render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
+
+  auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
+  add_picture_options(*submit, options);
+  add_output(*submit, options, false);
+  submit->add_flag("--wait", options.wait, "follow the job to its end (implied by -o)");
+  submit->add_option("--name", options.picture.request.name, "of the job, for people");
+  submit->add_option("--priority", options.picture.request.priority)->check(CLI::Range(1, 100));
+  submit->add_option("--idempotency-key", options.idempotency_key,
+                     "the same key again gives the same job");
+
+  auto* watch = app.add_subcommand("watch", "follow a job to its end");
+  add_job(*watch, options);
+  auto* fetch = app.add_subcommand("fetch", "download the newest picture of a job");
+  add_job(*fetch, options);
+  add_output(*fetch, options, true);
+  fetch->add_option("--exposure", options.picture.exposure_stops, "stops, for PNG")
+      ->check(CLI::Range(-32.0, 32.0));
+  auto* cancel = app.add_subcommand("cancel", "stop a job and keep its partial picture");
+  add_job(*cancel, options);
+  app.add_subcommand("scenes", "list the scenes of the server");
+  auto* jobs = app.add_subcommand("jobs", "list the jobs of the server");
+  jobs->add_option("--state", options.state, "only these states, separated by commas");
+  app.add_subcommand("health", "is the server able to take work");
+}
+
+}  // namespace
+
+ParsedCli parse_cli_options(int argc, const char* const* argv) {
+  ParsedCli parsed;
+  CliOptions& options = parsed.options;
+  CLI::App app("raykiln: renders scenes, here or on a server");
+  app.footer(exit_code_table());
+  app.set_version_flag("--version", std::string("raykiln ") + RAYKILN_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.add_option("--server", options.server, "URL of the daemon")
+      ->envname("RAYKILN_SERVER")
+      ->capture_default_str();
+  app.add_flag("--json", options.json, "results as JSON on standard output");
+  app.add_flag("-q,--quiet", options.quiet, "no progress");
+  add_commands(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    parsed.exit_code = app.exit(error) == 0 ? 0 : to_int(ExitCode::kUsage);
+    return parsed;
+  }
+  options.command = app.get_subcommands().front()->get_name();
+  options.picture.request.camera = camera_choice(options.picture.camera);
+  for (const auto& output : options.outputs) {
+    if (output.extension() == ".exr" || output.extension() == ".png") continue;
+    std::cerr << "raykiln: " << output << ": a picture file ends in .exr or .png\n";
+    parsed.exit_code = to_int(ExitCode::kUsage);
+  }
+  return parsed;
+}
+
+ExitCode run_cli(const CliOptions& options) {
+  if (options.command == "render") return render_command(options);
+  if (options.command == "submit") return submit_command(options);
+  if (options.command == "watch") return watch_command(options);
+  if (options.command == "fetch") return fetch_command(options);
+  if (options.command == "cancel") return cancel_command(options);
+  if (options.command == "scenes") return scenes_command(options);
+  if (options.command == "jobs") return jobs_command(options);
+  return health_command(options);
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,220 @@
+#include "raykiln/app/local_render.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+
+#include "raykiln/render/render.hpp"
+#include "raykiln/scheduler/render_inputs.hpp"
+#include "raykiln/workers/scene_intake.hpp"
+
+namespace raykiln::server {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+/// Results on their way from the pool's threads to the one that folds them.
+class Outbox {
+ public:
+  void put(TileOutcome outcome) {
+    const std::lock_guard lock(mutex_);
+    outcomes_.push_back(std::move(outcome));
+    ready_.notify_one();
+  }
+  TileOutcome take() {
+    std::unique_lock lock(mutex_);
+    ready_.wait(lock, [this] { return !outcomes_.empty(); });
+    auto outcome = std::move(outcomes_.front());
+    outcomes_.pop_front();
+    return outcome;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable ready_;
+  std::deque<TileOutcome> outcomes_;
+};
+
+void add(JobStatistics& sum, const TileOutcome& outcome) {
+  sum.worker_seconds += outcome.seconds;
+  ++sum.tasks;
+  for (const auto& result : outcome.results) {
+    const auto& stats = result.stats;
+    sum.camera_rays += stats.camera_rays;
+    sum.bounce_rays += stats.bounce_rays;
+    sum.shadow_rays += stats.shadow_rays;
+    sum.paths += stats.paths;
+    sum.non_finite += stats.non_finite;
+    sum.negative += stats.negative;
+    sum.truncated += stats.truncated;
+    for (const auto& bad : result.bad_samples) {
+      if (sum.bad_samples.size() < 16) sum.bad_samples.push_back({bad.x, bad.y, bad.sample});
+    }
+  }
+}
+
+std::vector<std::uint32_t> block_sizes(const std::vector<render::SampleBlock>& blocks) {
+  std::vector<std::uint32_t> sizes;
+  sizes.reserve(blocks.size());
+  for (const auto& block : blocks) sizes.push_back(static_cast<std::uint32_t>(block.count));
+  return sizes;
+}
+
+/// The plan decides, the pool renders, this thread folds and shows.
+class LocalJob {
+ public:
+  LocalJob(std::shared_ptr<const render::PreparedScene> scene, render::RenderSettings settings,
+           const JobRequest& request, LocalPool& pool)
+      : scene_(std::move(scene)),
+        settings_(settings),
+        request_(request),
+        pool_(pool),
+        blocks_(render::blocks_for(request.stop.samples)),
+        plan_(request.width, request.height, request.tile, block_sizes(blocks_), TaskLength{}),
+        film_(request.width, request.height) {}
+
+  /// The first fault of a worker, or success.
+  Status run(const std::function<void(const ProgressState&)>& progress) {
+    begun_ = Steady::now();
+    auto shown = begun_;
+    std::optional<Error> fault;
+    while (true) {
+      if (!fault) feed();
+      if (plan_.items_in_flight() == 0) break;
+      const TileOutcome outcome = outbox_.take();
+      if (outcome.error && !fault) fault = outcome.error;
+      fold(outcome);
+      if (Steady::now() - shown < std::chrono::milliseconds(100)) continue;
+      shown = Steady::now();
+      progress(state());
+    }
+    statistics_.render_seconds = seconds();
+    if (fault) return *fault;
+    progress(state());
+    return success();
+  }
+
+  [[nodiscard]] render::Image image() const { return film_.resolve(); }
+  [[nodiscard]] const JobStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] RenderProgress progress() const {
+    RenderProgress p;
+    p.samples_done = plan_.samples_done();
+    p.samples_target = plan_.samples_target();
+    p.samples_per_pixel = p.fraction() * static_cast<double>(request_.stop.samples);
+    p.tiles = plan_.tiles();
+    p.tiles_started = plan_.tiles_started();
+    p.tiles_done = plan_.tiles_done();
+    return p;
+  }
+
+ private:
+  void feed() {
+    // One more than there are workers, so that none waits for this thread.
+    const auto most = static_cast<std::size_t>(pool_.concurrency()) + 2;
+    while (plan_.items_in_flight() < most) {
+      auto item = plan_.next();
+      if (!item) return;
+      TileTask task;
+      task.scene = scene_;
+      task.settings = settings_;
+      task.blocks.assign(blocks_.begin() + static_cast<std::ptrdiff_t>(item->first_block),
+                         blocks_.begin() + static_cast<std::ptrdiff_t>(item->end_block));
+      task.item = std::move(*item);
+      pool_.start(std::move(task), [this](TileOutcome outcome) { outbox_.put(std::move(outcome)); });
+    }
+  }
+
+  void fold(const TileOutcome& outcome) {
+    const auto start = Steady::now();
+    if (!outcome.error) {
+      for (const auto& result : outcome.results) render::merge(film_, result);
+    }
+    plan_.merged(outcome.item, outcome.seconds);
+    add(statistics_, outcome);
+    statistics_.merge_seconds += std::chrono::duration<double>(Steady::now() - start).count();
+  }
+
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Steady::now() - begun_).count();
+  }
+
+  [[nodiscard]] ProgressState state() const {
+    const RenderProgress p = progress();
+    ProgressState s;
+    s.stage = "rendering";
+    s.fraction = p.fraction();
+    s.samples_done = p.samples_per_pixel;
+    s.samples_target = static_cast<double>(request_.stop.samples);
+    s.elapsed_seconds = seconds();
+    if (s.fraction > 0.0) s.remaining_seconds = s.elapsed_seconds * (1.0 - s.fraction) / s.fraction;
+    s.rays_per_second = static_cast<double>(statistics_.rays()) / std::max(s.elapsed_seconds, 1e-9);
+    return s;
+  }
+
+  std::shared_ptr<const render::PreparedScene> scene_;
+  render::RenderSettings settings_;
+  const JobRequest& request_;
+  LocalPool& pool_;
+  std::vector<render::SampleBlock> blocks_;
+  TilePlan plan_;
+  render::Film film_;
+  Outbox outbox_;
+  JobStatistics statistics_;
+  Steady::time_point begun_;
+};
+
+std::vector<JobWarning> warnings_of(const SceneReport& report) {
+  std::vector<JobWarning> warnings;
+  for (const auto& warning : report.warnings) {
+    const bool both = !warning.file.empty() && !warning.where.empty();
+    warnings.push_back({warning.code, warning.message,
+                        warning.file + (both ? ":" : "") + warning.where});
+  }
+  return warnings;
+}
+
+}  // namespace
+
+Result<LocalPicture> render_locally(const ScenePackage& package, const JobRequest& request,
+                                    LocalPool& pool, const std::filesystem::path& scratch,
+                                    const std::function<void(const ProgressState&)>& progress) {
+  const auto begun = Steady::now();
+  const auto since = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
+  progress({.stage = "importing"});
+  // What the user's own machine holds needs no bound against strangers, only the importer's.
+  UploadLimits limits;
+  limits.max_unpacked_bytes = UINT64_MAX;
+  const auto intake = make_scene_intake(
+      limits, [&scratch] { return Result<std::filesystem::path>(scratch); });
+  auto loaded = intake->load(package.kind, package.files, {});
+  if (!loaded) return loaded.error();
+  const auto settings = render_settings(request, *loaded->scene);
+  if (!settings) return settings.error();
+
+  const auto build_begun = since();
+  const auto runner = pool.task_runner(
+      [&](double fraction) {
+        progress({.stage = "building", .fraction = fraction, .elapsed_seconds = since()});
+      },
+      {});
+  auto tree = render::build_scene_tree(*loaded->scene, {}, *runner);
+  const double build_seconds = since() - build_begun;
+  LocalJob job(render::prepare(loaded->scene, std::move(tree)), *settings, request, pool);
+  const double prepare_seconds = since();
+  if (auto status = job.run(progress); !status) return status.error();
+
+  LocalPicture picture;
+  picture.image = job.image();
+  picture.job.request = request;
+  picture.job.state = JobState::kCompleted;
+  picture.job.progress = job.progress();
+  picture.job.statistics = job.statistics();
+  picture.job.statistics.prepare_seconds = prepare_seconds;
+  picture.job.statistics.tree_build_seconds = build_seconds;
+  picture.job.elapsed_seconds = since();
+  picture.job.warnings = warnings_of(loaded->report);
+  return picture;
+}
+
+}  // namespace raykiln::server

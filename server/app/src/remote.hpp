@@ -1,0 +1,54 @@
+// What the commands that talk to a daemon share.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "raykiln/api/job_json.hpp"
+#include "raykiln/app/cli.hpp"
+#include "raykiln/app/http_client.hpp"
+#include "raykiln/app/progress.hpp"
+
+namespace raykiln::server {
+
+/// A connection's address and what to do with answers. `fail` prints and gives the exit code.
+class Remote {
+ public:
+  /// Nothing, and a message, when the URL is wrong.
+  [[nodiscard]] static std::optional<Remote> open(const CliOptions& options);
+
+  /// The response when its status is 2xx; else nothing, a message, and the code is in `failure`.
+  [[nodiscard]] std::optional<ClientResponse> ask(const std::string& method,
+                                                  const std::string& target,
+                                                  const ClientHeaders& headers = {},
+                                                  const std::string& body = {});
+  [[nodiscard]] std::optional<ClientResponse> check(Result<ClientResponse> response);
+
+  /// Follows a job to its final state, over reconnections; nothing and `failure` otherwise.
+  [[nodiscard]] std::optional<JobView> follow(const std::string& job, ProgressLine& line,
+                                              std::string* last_json);
+
+  [[nodiscard]] ExitCode failure() const { return failure_; }
+  [[nodiscard]] const ServerAddress& address() const { return address_; }
+  ExitCode fail(ExitCode code, const std::string& message);
+
+ private:
+  explicit Remote(ServerAddress address) : address_(std::move(address)) {}
+
+  ServerAddress address_;
+  ExitCode failure_ = ExitCode::kOk;
+};
+
+[[nodiscard]] ExitCode exit_code_for_status(int status);
+/// 0, kJobFailed or kJobCancelled.
+[[nodiscard]] ExitCode exit_code_for_state(const std::string& state);
+
+/// Makes the server have the scene; its id.
+[[nodiscard]] std::optional<std::string> upload_scene(Remote& remote, const CliOptions& options);
+
+/// Downloads the newest picture into each of the outputs.
+[[nodiscard]] ExitCode fetch_pictures(Remote& remote, const CliOptions& options,
+                                      const std::string& job);
+
+}  // namespace raykiln::server

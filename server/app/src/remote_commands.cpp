@@ -1,0 +1,137 @@
+#include <unistd.h>
+
+#include <cstdio>
+#include <iomanip>
+#include <iostream>
+
+#include "raykiln/api/percent.hpp"
+#include "raykiln/api/scene_json.hpp"
+#include "remote.hpp"
+
+namespace raykiln::server {
+namespace {
+
+bool on_terminal() { return isatty(STDERR_FILENO) != 0; }
+
+/// Follows, prints the outcome, and fetches the pictures that are asked for.
+ExitCode see_through(Remote& remote, const CliOptions& options, const std::string& job) {
+  std::string json;
+  ProgressLine line(std::cerr, on_terminal(), options.quiet);
+  const auto end = remote.follow(job, line, &json);
+  line.finish();
+  if (!end) return remote.failure();
+  const auto outcome = exit_code_for_state(end->state);
+  if (options.json) std::cout << json << '\n';
+  else if (!options.quiet) std::cerr << "job " << job << ' ' << end->state << '\n';
+  if (!end->error.empty()) std::cerr << "raykiln: " << end->error << '\n';
+  if (!options.outputs.empty() && end->has_image) {
+    const auto fetched = fetch_pictures(remote, options, job);
+    if (fetched != ExitCode::kOk && outcome == ExitCode::kOk) return fetched;
+  }
+  return outcome;
+}
+
+/// Text in a column; what a stranger named may hold anything, so that controls are left out.
+std::string clean(const std::string& text) {
+  std::string out;
+  for (const char c : text) out.push_back(static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c);
+  return out;
+}
+
+}  // namespace
+
+ExitCode submit_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  const auto scene = upload_scene(*remote, options);
+  if (!scene) return remote->failure();
+  JobRequest request = options.picture.request;
+  request.scene = *scene;
+  ClientHeaders headers{{"Content-Type", "application/json"}};
+  if (!options.idempotency_key.empty()) headers.emplace_back("Idempotency-Key", options.idempotency_key);
+  const auto answer = remote->ask("POST", "/v1/jobs", headers, job_request_json(request));
+  if (!answer) return remote->failure();
+  const auto job = parse_job_view(answer->body);
+  if (!job) return remote->fail(ExitCode::kFailure, "the server's answer is no job");
+  if (options.wait || !options.outputs.empty()) {
+    if (!options.json) std::cout << job->id << std::endl;
+    return see_through(*remote, options, job->id);
+  }
+  std::cout << (options.json ? answer->body : job->id) << '\n';
+  return ExitCode::kOk;
+}
+
+ExitCode watch_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  return see_through(*remote, options, percent_encode(options.job));
+}
+
+ExitCode fetch_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  return fetch_pictures(*remote, options, percent_encode(options.job));
+}
+
+ExitCode cancel_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  const auto answer = remote->ask("POST", "/v1/jobs/" + percent_encode(options.job) + "/cancel");
+  if (!answer) return remote->failure();
+  if (options.json) std::cout << answer->body << '\n';
+  return ExitCode::kOk;
+}
+
+ExitCode scenes_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  std::string cursor;
+  do {
+    const auto answer = remote->ask("GET", "/v1/scenes?limit=200" + (cursor.empty() ? "" : "&cursor=" + cursor));
+    if (!answer) return remote->failure();
+    const auto page = parse_scene_page(answer->body);
+    if (!page) return remote->fail(ExitCode::kFailure, "the server's answer is no list of scenes");
+    if (options.json) std::cout << answer->body << '\n';
+    for (const auto& scene : page->scenes) {
+      if (options.json) break;
+      std::cout << scene.id << "  " << std::setw(10) << scene.triangles << " triangles  "
+                << clean(scene.name) << '\n';
+    }
+    cursor = percent_encode(page->next_cursor);
+  } while (!cursor.empty());
+  return ExitCode::kOk;
+}
+
+ExitCode jobs_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  std::string cursor;
+  const std::string filter = options.state.empty() ? "" : "&state=" + percent_encode(options.state);
+  do {
+    const auto answer = remote->ask("GET", "/v1/jobs?limit=200" + filter + (cursor.empty() ? "" : "&cursor=" + cursor));
+    if (!answer) return remote->failure();
+    const auto page = parse_job_page(answer->body);
+    if (!page) return remote->fail(ExitCode::kFailure, "the server's answer is no list of jobs");
+    if (options.json) std::cout << answer->body << '\n';
+    for (const auto& job : page->jobs) {
+      if (options.json) break;
+      std::cout << std::left << std::setw(32) << job.id << std::setw(12) << job.state << std::right
+                << std::setw(4) << static_cast<int>(job.fraction * 100.0) << " %  "
+                << clean(job.name) << '\n';
+    }
+    cursor = percent_encode(page->next_cursor);
+  } while (!cursor.empty());
+  return ExitCode::kOk;
+}
+
+ExitCode health_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  const auto answer =
+      remote->check(HttpClient(remote->address(), std::chrono::seconds(5)).request("GET", "/readyz"));
+  if (!answer) return remote->failure();
+  if (!options.quiet) std::cout << answer->body << '\n';
+  return ExitCode::kOk;
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,108 @@
+#include <unistd.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "output_file.hpp"
+#include "raykiln/api/job_json.hpp"
+#include "raykiln/app/cli.hpp"
+#include "raykiln/app/local_render.hpp"
+#include "raykiln/image/encode.hpp"
+
+namespace raykiln::server {
+namespace {
+
+/// A private folder that goes away with this object.
+class Scratch {
+ public:
+  Scratch() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "raykiln-XXXXXX").string();
+    if (mkdtemp(pattern.data()) != nullptr) path_ = pattern;
+  }
+  ~Scratch() {
+    std::error_code ignored;  // nothing to be done about it at the end
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+ExitCode complain(const Error& error) {
+  std::cerr << "raykiln: " << error.message;
+  if (!error.where.empty()) std::cerr << " (" << error.where << ')';
+  std::cerr << " [" << error.code << "]\n";
+  if (error.kind == ErrorKind::kInternal) return ExitCode::kFailure;
+  if (error.code == "invalid_request") return ExitCode::kUsage;
+  return ExitCode::kScene;
+}
+
+std::map<std::string, std::string> attributes(const LocalPicture& picture, const std::string& scene) {
+  const JobSnapshot& job = picture.job;
+  return {{"raykiln:scene", scene},
+          {"raykiln:light_model", std::string(name(job.request.light_model))},
+          {"raykiln:seed", std::to_string(job.request.seed)},
+          {"raykiln:samples", std::to_string(job.request.stop.samples)},
+          {"raykiln:max_depth", std::to_string(job.request.max_depth)},
+          {"raykiln:seconds", std::to_string(job.elapsed_seconds)},
+          {"raykiln:version", RAYKILN_VERSION}};
+}
+
+ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
+                        const std::string& scene) {
+  for (const auto& output : options.outputs) {
+    auto encoded = output.extension() == ".exr"
+                       ? render::encode_exr(picture.image, attributes(picture, scene))
+                       : render::encode_png(picture.image, options.picture.exposure_stops);
+    std::optional<std::string> error;
+    if (const auto* failure = std::get_if<render::EncodeError>(&encoded)) {
+      error = failure->message;
+    } else {
+      const auto& bytes = std::get<render::Bytes>(encoded);
+      const std::string text(bytes.begin(), bytes.end());
+      error = write_whole_file(output, text);
+    }
+    if (!error) continue;
+    std::cerr << "raykiln: " << *error << '\n';
+    return ExitCode::kFailure;
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+ExitCode render_command(const CliOptions& options) {
+  render::set_image_library_threads(1);
+  const auto package = find_scene_files(options.scene);
+  if (!package) return complain(package.error());
+  const auto scene = scene_id(*package);
+  if (!scene) return complain(scene.error());
+  JobRequest request = options.picture.request;
+  request.scene = *scene;
+  if (const auto valid = validate(request, JobLimits{}); !valid) return complain(valid.error());
+
+  const Scratch scratch;
+  WorkerSettings workers;
+  workers.threads = options.threads;
+  LocalPool pool(workers);
+  ProgressLine line(std::cerr, isatty(STDERR_FILENO) != 0, options.quiet);
+  auto picture = render_locally(*package, request, pool, scratch.path(),
+                                [&line](const ProgressState& state) { line.show(state); });
+  line.finish();
+  if (!picture) return complain(picture.error());
+  if (!options.quiet) {
+    for (const auto& warning : picture->job.warnings) {
+      std::cerr << "warning: " << warning.message;
+      if (!warning.where.empty()) std::cerr << " (" << warning.where << ')';
+      std::cerr << '\n';
+    }
+  }
+  const auto code = write_pictures(options, *picture, *scene);
+  if (options.json && code == ExitCode::kOk) std::cout << job_json(picture->job) << '\n';
+  return code;
+}
+
+}  // namespace raykiln::server
