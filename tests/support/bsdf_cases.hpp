@@ -51,6 +51,29 @@ inline Vec3f at_degrees(double degrees) {
   return Vec3f(Vec3d(0.8 * std::sin(theta), -0.6 * std::sin(theta), std::cos(theta)));
 }
 
+inline constexpr BsdfModel kSeedBsdf{.direction_sampling = DirectionSampling::kBsdf,
+                                     .light = kSeedModel};
+inline constexpr BsdfModel kPhysicalBsdf{};
+
+struct NamedModel {
+  std::string name;
+  BsdfModel model;
+};
+
+/// Both light models, and each switch of the physical one turned by itself.
+inline std::vector<NamedModel> light_models() {
+  std::vector<NamedModel> list{{"physical", kPhysicalBsdf}, {"seed", kSeedBsdf}};
+  for (int i = 0; i < 4; ++i) {
+    BsdfModel model;
+    if (i == 0) model.light.phong = PhongCosine::kOverCosO;
+    if (i == 1) model.light.fresnel = FresnelFormula::kSchlick;
+    if (i == 2) model.light.radiance_scaling = false;
+    if (i == 3) model.light.diffuse_sampling = DiffuseSampling::kUniform;
+    list.push_back({render::name(model.light), model});
+  }
+  return list;
+}
+
 inline Bsdf bsdf_at(const Material& material, const Vec3f& wo, const BsdfModel& model = {}) {
   return make_bsdf(material, kUp, kUp, wo, model);
 }

@@ -13,6 +13,8 @@ namespace raykiln::render {
 struct PathState {
   PathKey key;
   Rgbd throughput{1.0};
+  /// What of the throughput is no loss: changes of medium, and one over the rays shot with it.
+  double scale = 1.0;
   double pdf = 0.0;        ///< of the ray's direction times the rays shot with it, sr^-1
   std::uint64_t node = 0;  ///< number of the branch among those of its bounce
   std::uint32_t slot = 0;  ///< index of its PathResult

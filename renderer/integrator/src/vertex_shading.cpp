@@ -1,5 +1,6 @@
 #include "vertex_shading.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "raykiln/shading/surface_point.hpp"
@@ -17,6 +18,23 @@ bool finite(const Rgbd& c) {
   return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 bool zero(const Rgb& c) { return c == Rgb(0.0F); }
+
+/// Reflections that roulette leaves alone: the first ones bring most of the light.
+constexpr std::uint32_t kBouncesBeforeRoulette = 3;
+
+/// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is its throughput
+/// so far. The part of the throughput that is a change of medium is left out of p: inside glass of
+/// index n radiance is n^2 times larger, on the way from the camera throughput n^2 times smaller,
+/// and such a path is worth no less. What goes on has a throughput of `scale`, so weights stay bounded.
+bool survives_roulette(PathState& path, const VertexKey& key) {
+  if (path.bounce <= kBouncesBeforeRoulette) return true;
+  const Rgbd& t = path.throughput;
+  const double p = std::max({t.x, t.y, t.z}) / path.scale;
+  if (!(p < 1.0)) return true;  // also what is not finite: it is counted further on
+  if (uniform(key, Dimension::kRoulette) >= p) return false;
+  path.throughput /= p;
+  return true;
+}
 
 /// Density over solid angle of a density over area, seen over `distance2` under `cosine`.
 double solid_angle_pdf(double pdf_area, double distance2, double cosine) {
@@ -85,7 +103,9 @@ class VertexShader {
       const BsdfSample sample = sample_bsdf(vertex.bsdf, key);
       if (sample.lobe == Lobe::kNone) continue;
       child.throughput *= sample.weight / static_cast<double>(branches);
+      child.scale *= sample.radiance_scale / static_cast<double>(branches);
       child.pdf = sample.pdf * static_cast<double>(branches);
+      if (settings_.bsdf.light.roulette && !survives_roulette(child, key)) continue;
       if (!finite(child.throughput)) {
         // Poisons the sample, which is then dropped, counted and located: never a silent black.
         sinks_.results[state_.slot].emitted += child.throughput;

@@ -13,11 +13,12 @@ constexpr std::size_t kMostLocated = 16;     ///< bad samples that a result name
 PathSettings path_settings(const RenderSettings& settings) {
   PathSettings path;
   path.seed = settings.seed;
-  path.max_depth = settings.max_depth;
+  path.max_depth = path_limit(settings);
   path.branches = settings.branches;
   path.pixel_mode = settings.pixel_mode;
   path.emitter_sampling = settings.emitter_sampling;
   path.bsdf.direction_sampling = settings.direction_sampling;
+  path.bsdf.light = settings.light_model;
   path.traversal = settings.traversal;
   return path;
 }
@@ -93,7 +94,9 @@ TileResult render_tile(const PreparedScene& scene, const RenderSettings& setting
                        std::stop_token stop) {
   TileResult result = empty_result(rect, blocks);
   if (rect.width() <= 0 || rect.height() <= 0) return result;
-  const CameraRays camera(scene.scene().cameras[static_cast<std::size_t>(settings.camera)],
+  const CameraRays camera(settings.own_camera
+                              ? *settings.own_camera
+                              : scene.scene().cameras[static_cast<std::size_t>(settings.camera)],
                           settings.width, settings.height);
   PathTracer tracer({scene.scene(), scene.tree(), scene.emitters()}, camera,
                     path_settings(settings));

@@ -14,6 +14,12 @@ std::string between(const char* name, long long low, long long high) {
 
 }  // namespace
 
+int path_limit(const RenderSettings& settings) {
+  if (settings.max_depth) return *settings.max_depth;
+  const bool one_ray = settings.branches == 1;
+  return settings.light_model.roulette && one_ray ? kRouletteLimit : kFixedDepth;
+}
+
 std::uint64_t film_bytes(int width, int height) {
   if (width <= 0 || height <= 0) return 0;
   const double bytes = static_cast<double>(width) * height * static_cast<double>(Film::bytes_per_pixel());
@@ -32,16 +38,17 @@ std::optional<std::string> settings_error(const RenderSettings& settings, const 
     return "camera " + std::to_string(settings.camera) + " does not exist: the scene has " +
            std::to_string(cameras);
   }
-  if (settings.max_depth < 0 || settings.max_depth > kLargestDepth) {
+  const int depth = path_limit(settings);
+  if (depth < 0 || depth > kLargestDepth) {
     return between("max_depth", 0, kLargestDepth);
   }
   if (settings.branches < 1 || settings.branches > kMostBranches) {
     return between("branches", 1, kMostBranches);
   }
   if (settings.branches > 1 &&
-      rays_of_one_path(settings.branches, settings.max_depth) > kMostRaysOfPath) {
+      rays_of_one_path(settings.branches, depth) > kMostRaysOfPath) {
     return "branches " + std::to_string(settings.branches) + " at max_depth " +
-           std::to_string(settings.max_depth) + " would shoot more than " +
+           std::to_string(depth) + " would shoot more than " +
            std::to_string(static_cast<long long>(kMostRaysOfPath)) +
            " rays for one sample; lower one of them";
   }

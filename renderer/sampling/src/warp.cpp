@@ -16,6 +16,8 @@ double sample_one_minus_cos(double u, double exponent) {
   return std::min(-std::expm1(std::log1p(-u) / (exponent + 1.0)), 1.0 - 0x1p-53);
 }
 
+double sample_cosine_one_minus_cos(double u) { return u / (1.0 + std::sqrt(1.0 - u)); }
+
 double cosine_power_pdf(double x, double exponent) {
   if (!(x < 1.0)) return 0.0;
   const double power = exponent == 0.0 ? 1.0 : std::exp(exponent * std::log1p(-x));

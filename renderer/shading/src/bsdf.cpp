@@ -33,31 +33,49 @@ LobeChoice choose_lobes(const Material& material, double share) {
   return choice;
 }
 
-/// Value on the side of wo: diffuse + (opaque + transparent F(theta_i)) f_ph, f_ph with 1/cos_o.
-BsdfValue evaluate_same_side(const Bsdf& b, double cos_i, double x_diffuse, double x_specular) {
+/// What a Phong lobe is divided by; `cos_axis` is that of the side's undisturbed direction.
+double phong_divisor(const Bsdf& b, double cos_i, double cos_axis) {
+  return b.model.light.phong == PhongCosine::kMax ? std::max(cos_i, cos_axis) : cos_axis;
+}
+
+/// Density of diffuse directions at this cosine with the normal, which may be negative.
+double diffuse_pdf(const Bsdf& b, double cosine) {
+  return b.model.light.diffuse_sampling == DiffuseSampling::kCosine
+             ? std::max(cosine, 0.0) / kPi
+             : cosine_power_pdf(1.0 - cosine, 0.0);
+}
+
+/// Value on the side of wo: diffuse + (opaque + transparent F(theta_i)) f_ph, f_ph over cos_o or
+/// max(cos_i, cos_o). `cosine` is n.wi.
+BsdfValue evaluate_same_side(const Bsdf& b, double cosine, double x_specular) {
+  const double cos_i = std::max(cosine, 0.0);
   const double lobe =
       b.choice.specular > 0.0 ? cosine_power_pdf(x_specular, b.exponent) : 0.0;
   Rgbd f = b.diffuse_same;
   if (lobe > 0.0) {
-    const double reflectance = fresnel_schlick(cos_i, b.eta_o, b.eta_t).reflectance;
-    f += (b.specular_opaque + b.specular_transparent * reflectance) * (lobe / b.cos_o);
+    const double reflectance = fresnel(b.model.light.fresnel, cos_i, b.eta_o, b.eta_t).reflectance;
+    f += (b.specular_opaque + b.specular_transparent * reflectance) *
+         (lobe / phong_divisor(b, cos_i, b.cos_o));
   }
-  const double diffuse = (1.0 - b.choice.specular) * (1.0 - b.choice.diffuse_through) *
-                         cosine_power_pdf(x_diffuse, b.model.diffuse_exponent);
+  const double diffuse =
+      (1.0 - b.choice.specular) * (1.0 - b.choice.diffuse_through) * diffuse_pdf(b, cosine);
   return {f * cos_i, diffuse + b.choice.specular * (1.0 - b.choice.specular_through) * lobe};
 }
 
-/// Value on the other side: diffuse + transparent (1 - F(theta_i)) f_ph(wi, refract(wo)).
-BsdfValue evaluate_other_side(const Bsdf& b, double cos_i, double x_diffuse, double x_specular) {
+/// Value on the other side: diffuse + transparent (1 - F(theta_i)) f_ph(wi, refract(wo)), the latter
+/// scaled by the change of medium. `cosine` is -n.wi.
+BsdfValue evaluate_other_side(const Bsdf& b, double cosine, double x_specular) {
+  const double cos_i = std::max(cosine, 0.0);
   const bool refracts = b.choice.specular * b.choice.specular_through > 0.0 && b.cos_t > 0.0;
   const double lobe = refracts ? cosine_power_pdf(x_specular, b.exponent) : 0.0;
   Rgbd f = b.diffuse_through;
   if (lobe > 0.0) {
-    const double reflectance = fresnel_schlick(cos_i, b.eta_t, b.eta_o).reflectance;
-    f += b.specular_transparent * ((1.0 - reflectance) * lobe / b.cos_t);
+    const double reflectance = fresnel(b.model.light.fresnel, cos_i, b.eta_t, b.eta_o).reflectance;
+    f += b.specular_transparent *
+         (b.radiance_scale * ((1.0 - reflectance) * lobe / phong_divisor(b, cos_i, b.cos_t)));
   }
-  const double diffuse = (1.0 - b.choice.specular) * b.choice.diffuse_through *
-                         cosine_power_pdf(x_diffuse, b.model.diffuse_exponent);
+  const double diffuse =
+      (1.0 - b.choice.specular) * b.choice.diffuse_through * diffuse_pdf(b, cosine);
   return {f * cos_i, diffuse + b.choice.specular * b.choice.specular_through * lobe};
 }
 
@@ -70,9 +88,9 @@ BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, double sampled_x) {
   const double x = sampled_x >= 0.0 ? sampled_x : one_minus_cos(axis, wi);
   BsdfValue value;
   if (side > 0.0) {
-    value = evaluate_same_side(b, std::max(cosine, 0.0), 1.0 - cosine, x);
+    value = evaluate_same_side(b, cosine, x);
   } else if (side < 0.0) {
-    value = evaluate_other_side(b, std::max(-cosine, 0.0), 1.0 + cosine, x);
+    value = evaluate_other_side(b, -cosine, x);
   }
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
     value.pdf = kUniformSpherePdf;
@@ -86,7 +104,11 @@ BsdfSample finish(const Bsdf& b, const Vec3f& wi, Lobe lobe, bool through, doubl
   if (lobe != Lobe::kNone && (through ? side >= 0.0 : side <= 0.0)) return {};
   const BsdfValue value = evaluate_with(b, wi, sampled_x);
   if (value.f_cos == Rgbd(0.0)) return {};
-  return {.wi = wi, .weight = value.f_cos / value.pdf, .pdf = value.pdf, .lobe = lobe};
+  return {.wi = wi,
+          .weight = value.f_cos / value.pdf,
+          .pdf = value.pdf,
+          .lobe = lobe,
+          .radiance_scale = lobe == Lobe::kSpecular && through ? b.radiance_scale : 1.0};
 }
 
 }  // namespace
@@ -117,37 +139,48 @@ Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns, const
 
   const Vec3d n(b.n), w(wo);
   b.mirror = Vec3f(normalize(2.0 * b.cos_o * n - w));
-  const FresnelTerm fresnel = fresnel_schlick(b.cos_o, b.eta_o, b.eta_t);
-  b.cos_t = fresnel.cos_t;
-  if (!fresnel.total_reflection) {
+  const FresnelTerm border = fresnel(model.light.fresnel, b.cos_o, b.eta_o, b.eta_t);
+  b.cos_t = border.cos_t;
+  if (!border.total_reflection) {
     b.refracted = Vec3f(refract(w, n, b.cos_o, b.cos_t, b.eta_o, b.eta_t));
   }
-  b.choice = choose_lobes(material, reflected_share(fresnel, b.exponent));
+  if (model.light.radiance_scaling) {
+    const double ratio = b.eta_o / b.eta_t;
+    b.radiance_scale = ratio * ratio;
+  }
+  b.choice = choose_lobes(material, reflected_share(border, b.exponent));
   return b;
 }
 
 BsdfValue evaluate(const Bsdf& bsdf, const Vec3f& wi) { return evaluate_with(bsdf, wi, -1.0); }
 
-BsdfSample sample_bsdf(const Bsdf& b, const VertexKey& vertex) {
+BsdfSample sample_bsdf(const Bsdf& b, const DirectionNumbers& numbers) {
   if (b.black) return {};
-  const double u = uniform(vertex, Dimension::kDirectionU);
-  const double v = uniform(vertex, Dimension::kDirectionV);
+  const auto& [lobe, side, u, v] = numbers;
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
     BsdfSample sample = finish(b, sample_uniform_sphere(u, v), Lobe::kNone, false, -1.0);
     if (sample.pdf > 0.0) sample.lobe = Lobe::kDiffuse;
     return sample;
   }
-  const bool specular = uniform(vertex, Dimension::kLobeChoice) < b.choice.specular;
+  const bool specular = lobe < b.choice.specular;
   const double through_share = specular ? b.choice.specular_through : b.choice.diffuse_through;
-  const bool through =
-      through_share > 0.0 && uniform(vertex, Dimension::kFresnelChoice) < through_share;
+  const bool through = side < through_share;
   if (specular) {
     const double x = sample_one_minus_cos(u, b.exponent);
     return finish(b, around_axis(through ? b.refracted : b.mirror, x, v), Lobe::kSpecular, through,
                   x);
   }
-  const double x = sample_one_minus_cos(u, b.model.diffuse_exponent);
+  const double x = b.model.light.diffuse_sampling == DiffuseSampling::kCosine
+                       ? sample_cosine_one_minus_cos(u)
+                       : sample_one_minus_cos(u, 0.0);
   return finish(b, around_axis(through ? -b.n : b.n, x, v), Lobe::kDiffuse, through, -1.0);
+}
+
+BsdfSample sample_bsdf(const Bsdf& b, const VertexKey& vertex) {
+  return sample_bsdf(b, DirectionNumbers{.lobe = uniform(vertex, Dimension::kLobeChoice),
+                                         .side = uniform(vertex, Dimension::kFresnelChoice),
+                                         .u = uniform(vertex, Dimension::kDirectionU),
+                                         .v = uniform(vertex, Dimension::kDirectionV)});
 }
 
 }  // namespace raykiln::render

@@ -320,10 +320,7 @@ class Session {
       co_return co_await write_all(connection_, text.append(*response.body));
     }
     if (!co_await write_all(connection_, text)) co_return false;
-    // Not `!with_body || co_await ...`: gcc 12 evaluates the operand of such a co_await even when
-    // the left side is true, and reads through the null body of a 204.
-    if (!with_body) co_return true;
-    co_return co_await write_all(connection_, *response.body);
+    co_return !with_body || co_await write_all(connection_, *response.body);
   }
 
   void account(const Exchange& exchange, int status) {

@@ -69,7 +69,7 @@ Result<render::RenderSettings> render_settings(const JobRequest& request,
   if (const auto* own = std::get_if<OwnCamera>(&request.camera)) {
     settings.own_camera = camera_of(*own, scene);
   }
-  settings.light_model = render::LightModel::kSeed;
+  settings.light_model = render::kSeedModel;
   settings.max_depth = request.max_depth;
   settings.branches = request.branches;
   settings.seed = request.seed;

@@ -1,5 +1,5 @@
 // What does one sample of one pixel cost, and where does the time go?
-// Usage: bench_scene_seconds_per_sample [samples] [side_px] [depth] [scene folder]
+// Usage: bench_scene_seconds_per_sample [samples] [side_px] [depth] [physical|seed] [scene folder]
 // Scenes: a room with glass, mirror, gloss, a lamp and a point light (38 triangles), the same room
 // with a ball of 20000 triangles, and the scene of the folder if one is given. One thread. The answer
 // is checked while it is timed: brute force must give the same bytes for a small tile.
@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <string_view>
 
 #include "raykiln/io/import.hpp"
 #include "support/scene_pieces.hpp"
@@ -102,14 +103,15 @@ int main(int argc, char** argv) {
   RenderSettings settings;
   settings.width = settings.height = argc > 2 ? std::atoi(argv[2]) : 128;
   settings.max_depth = argc > 3 ? std::atoi(argv[3]) : 8;
+  if (argc > 4 && std::string_view(argv[4]) == "seed") settings.light_model = kSeedModel;
   std::printf("{\"compiler\": \"%s\", \"build\": \"%s\", \"threads\": 1, \"samples\": %llu, "
-              "\"side_px\": %d, \"max_depth\": %d, \"scenes\": [\n",
+              "\"side_px\": %d, \"max_depth\": %d, \"light_model\": \"%s\", \"scenes\": [\n",
               RAYKILN_COMPILER, RAYKILN_BUILD_TYPE, static_cast<unsigned long long>(samples),
-              settings.width, settings.max_depth);
+              settings.width, path_limit(settings), name(settings.light_model).c_str());
   support::SceneBuilder room = support::mixed_room(), ball = support::mixed_room();
   add_ball(ball, 100);
   bool ok = measure("room", std::make_shared<const Scene>(room.scene()), settings, samples, ",");
-  const char* folder = argc > 4 ? argv[4] : nullptr;
+  const char* folder = argc > 5 ? argv[5] : nullptr;
   ok = measure("room_with_ball", std::make_shared<const Scene>(ball.scene()), settings, samples,
                folder != nullptr ? "," : "") &&
        ok;

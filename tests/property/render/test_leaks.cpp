@@ -14,6 +14,7 @@ TileResult render(const SceneBuilder& b, int side, int depth, std::uint64_t samp
   RenderSettings settings;
   settings.width = settings.height = side;
   settings.max_depth = depth;
+  settings.light_model.roulette = false;  // all paths to the end
   return support::render_all(*b.prepare(), settings, samples);
 }
 

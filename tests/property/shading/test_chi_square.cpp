@@ -62,10 +62,8 @@ std::vector<Case> setups() {
   for (const auto& [name, material] : support::lobe_materials()) {
     if (material.specular_exp > 100.0) continue;  // fits in one cell: tested about its own axis
     for (const double degrees : {0.0, 45.0, 85.0, 120.0, 175.0}) {
-      for (const double diffuse_exponent : {0.0, 1.0}) {
-        BsdfModel model;
-        model.diffuse_exponent = diffuse_exponent;
-        list.push_back({name + " at " + std::to_string(degrees),
+      for (const BsdfModel& model : {support::kPhysicalBsdf, support::kSeedBsdf}) {
+        list.push_back({name + " at " + std::to_string(degrees) + ' ' + render::name(model.light),
                         bsdf_at(material, at_degrees(degrees), model)});
       }
     }

@@ -37,6 +37,41 @@ TEST(Settings, BranchesThatStayWithinTheBoundAreAllowed) {
   EXPECT_TRUE(settings_error(settings, scene).has_value());
 }
 
+TEST(Settings, DepthFollowsTheLightModelUnlessGiven) {
+  RenderSettings settings;
+  EXPECT_EQ(path_limit(settings), kRouletteLimit);
+  settings.branches = 2;  // a tree of rays must be bounded
+  EXPECT_EQ(path_limit(settings), kFixedDepth);
+  settings = {};
+  settings.light_model = kSeedModel;
+  EXPECT_EQ(path_limit(settings), 8);
+  settings.max_depth = 3;
+  EXPECT_EQ(path_limit(settings), 3);
+}
+
+TEST(Settings, WarningsNameWhatTheModelGetsWrongInThisScene) {
+  const auto codes = [](const LightModel& model, const Scene& scene) {
+    std::string all;
+    for (const auto& warning : light_model_warnings(model, scene)) all += warning.code + ' ';
+    return all;
+  };
+  const Scene room = support::mixed_room().scene();
+  EXPECT_EQ(codes(kPhysicalModel, room), "");
+  EXPECT_EQ(codes(kSeedModel, room), "heavy_tailed not_conserving_refraction ");
+  LightModel model = kSeedModel;
+  model.radiance_scaling = true;
+  EXPECT_EQ(codes(model, room), "heavy_tailed ");
+  model = kPhysicalModel;
+  model.radiance_scaling = false;
+  EXPECT_EQ(codes(model, room), "not_conserving_refraction ");
+  // Neither matters without a surface that shows it: a sharp mirror, glass of index 1, unused ones.
+  support::SceneBuilder b;
+  b.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.material(support::mirror_material(1.0F, 1e10)));
+  b.triangle({0, 0, 1}, {1, 0, 1}, {0, 1, 1}, b.material(support::glass_material(1.0F, 1e10)));
+  b.material(support::glass_material(1.5F, 10.0));
+  EXPECT_EQ(codes(kSeedModel, b.scene()), "");
+}
+
 TEST(Settings, FilmBytes) {
   EXPECT_EQ(film_bytes(1920, 1080), std::uint64_t{1920} * 1080 * Film::bytes_per_pixel());
   EXPECT_EQ(film_bytes(0, 5), 0U);

@@ -1,6 +1,7 @@
 // Which side is which: geometric normals decide sides, shading normals give cosines.
 #include <gtest/gtest.h>
 
+#include "raykiln/shading/fresnel.hpp"
 #include "support/bsdf_cases.hpp"
 
 namespace raykiln::render {
@@ -17,7 +18,7 @@ TEST(BsdfSides, ValuesOfTheSeedsFormulas) {
   const Vec3f wo = at_degrees(20.0), above = at_degrees(50.0), below = at_degrees(130.0);
   const double cosine = std::cos(50.0 * kPi / 180.0);
   const auto f = [&](const Material& m, const Vec3f& wi) {
-    return evaluate(bsdf_at(m, wo), wi).f_cos.x / cosine;
+    return evaluate(bsdf_at(m, wo, support::kSeedBsdf), wi).f_cos.x / cosine;
   };
   EXPECT_NEAR(f(make_material(0.8F, 0, 0.0F, 1), above), 0.8 / kPi, 1e-6);
   EXPECT_EQ(f(make_material(0.8F, 0, 0.0F, 1), below), 0.0);
@@ -34,7 +35,7 @@ TEST(BsdfSides, TransparentLobeSplitsByTheAngleOfArrival) {
   const Material glass = make_material(0, 1, 1, 7.0);
   const Vec3f wo = at_degrees(20.0), above = at_degrees(50.0), below = at_degrees(160.0);
   const double lobe_above = 8.0 / (2.0 * kPi) * std::pow(std::cos(70.0 * kPi / 180.0), 7.0);
-  const double f_above = evaluate(bsdf_at(glass, wo), above).f_cos.x / std::cos(50.0 * kPi / 180.0);
+  const double f_above = evaluate(bsdf_at(glass, wo, support::kSeedBsdf), above).f_cos.x / std::cos(50.0 * kPi / 180.0);
   const auto schlick = [](double rare_cosine) { return 0.04 + 0.96 * std::pow(1.0 - rare_cosine, 5.0); };
   EXPECT_NEAR(f_above, schlick(std::cos(50.0 * kPi / 180.0)) * lobe_above / std::cos(20.0 * kPi / 180.0),
               1e-6);
@@ -44,11 +45,35 @@ TEST(BsdfSides, TransparentLobeSplitsByTheAngleOfArrival) {
   // wi and the refracted direction lie on the same side of the normal's azimuth or across it.
   const double between = 20.0 * kPi / 180.0 + theta_t;
   const double outside = std::asin(1.5 * std::sin(20.0 * kPi / 180.0));
-  const double f_below = evaluate(bsdf_at(glass, wo), below).f_cos.x / std::cos(20.0 * kPi / 180.0);
+  const double f_below = evaluate(bsdf_at(glass, wo, support::kSeedBsdf), below).f_cos.x / std::cos(20.0 * kPi / 180.0);
   EXPECT_NEAR(f_below,
               (1.0 - schlick(std::cos(outside))) * 8.0 / (2.0 * kPi) *
                   std::pow(std::cos(between), 7.0) / std::cos(theta_t),
               1e-6);
+}
+
+// The same two values in the physical model: over the larger cosine, with Fresnel's equations and,
+// seen from index 1 into index 1.5, radiance divided by 1.5^2.
+TEST(BsdfSides, ValuesOfThePhysicalFormulas) {
+  const auto cosine = [](double degrees) { return std::cos(degrees * kPi / 180.0); };
+  const Material glass = make_material(0, 1, 1, 7.0);
+  const Vec3f wo = at_degrees(60.0), above = at_degrees(50.0), below = at_degrees(160.0);
+  const double lobe_above = 8.0 / (2.0 * kPi) * std::pow(cosine(110.0), 7.0);
+  EXPECT_EQ(evaluate(bsdf_at(glass, wo), above).f_cos.x, 0.0);  // 110 degrees off: behind the lobe
+  EXPECT_LT(lobe_above, 0.0);
+  const Vec3f near = at_degrees(20.0);
+  const double lobe = 8.0 / (2.0 * kPi) * std::pow(cosine(70.0), 7.0);
+  EXPECT_NEAR(evaluate(bsdf_at(glass, near), above).f_cos.x / cosine(50.0),
+              fresnel_exact(cosine(50.0), 1.0, 1.5).reflectance * lobe / cosine(20.0), 1e-6);
+  const double theta_t = std::asin(std::sin(20.0 * kPi / 180.0) / 1.5);
+  const double between = 20.0 * kPi / 180.0 + theta_t;
+  EXPECT_NEAR(evaluate(bsdf_at(glass, near), below).f_cos.x / cosine(20.0),
+              (1.0 - fresnel_exact(cosine(20.0), 1.5, 1.0).reflectance) * 8.0 / (2.0 * kPi) *
+                  std::pow(std::cos(between), 7.0) / std::max(std::cos(theta_t), cosine(20.0)) / 2.25,
+              1e-6);
+  EXPECT_NEAR(bsdf_at(glass, near).radiance_scale, 1.0 / 2.25, 1e-12);
+  EXPECT_NEAR(bsdf_at(glass, below).radiance_scale, 2.25, 1e-12);
+  EXPECT_EQ(bsdf_at(glass, near, support::kSeedBsdf).radiance_scale, 1.0);
 }
 
 TEST(BsdfSides, BehindTheGeometricNormalIsTheMaterial) {

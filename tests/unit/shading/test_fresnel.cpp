@@ -65,6 +65,41 @@ TEST(Fresnel, NeighboursOfTheCriticalAngle) {
   EXPECT_LT(total, 17);
 }
 
+// Averages of Fresnel's equations; from inside the average is 1 - (1 - outer average)/n^2.
+TEST(Fresnel, ExactAverages) {
+  for (const auto& [n, truth] : {std::pair{1.01, 0.003146}, {1.1, 0.025157}, {1.33, 0.065931},
+                                 {1.5, 0.091778}, {1.8, 0.134054}, {2.4, 0.210181}, {4.0, 0.366638},
+                                 {10.0, 0.640175}}) {
+    double outer = 0.0, inner = 0.0;
+    constexpr int kSteps = 200000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double c = (i + 0.5) / kSteps;
+      outer += 2.0 * c * fresnel_exact(c, 1.0, n).reflectance / kSteps;
+      inner += 2.0 * c * fresnel_exact(c, n, 1.0).reflectance / kSteps;
+    }
+    EXPECT_NEAR(outer, truth, 2e-6) << n;
+    EXPECT_NEAR(inner, 1.0 - (1.0 - outer) / (n * n), 2e-6) << n;
+  }
+}
+
+TEST(Fresnel, ExactAtItsExtremes) {
+  for (const double cosine : {1.0, 0.5, 1e-8, 0.0}) {
+    EXPECT_EQ(fresnel_exact(cosine, 1.0, 1.0).reflectance, 0.0);
+    EXPECT_EQ(fresnel_exact(cosine, 1.0, 1.0).cos_t, cosine);
+    EXPECT_EQ(fresnel_exact(cosine, 1.5, 1.5).reflectance, 0.0);
+  }
+  EXPECT_EQ(fresnel_exact(0.0, 1.0, 1.5).reflectance, 1.0);
+  EXPECT_TRUE(fresnel_exact(0.0, 1.5, 1.0).total_reflection);
+  for (const auto& [n, truth] : {std::pair{1.5, 0.04}, {10.0, 0.669421}, {1e3, 0.996008},
+                                 {1e6, 0.999996}, {1e20, 1.0}, {3.4e38, 1.0}, {1e-20, 1.0}}) {
+    EXPECT_NEAR(fresnel_exact(1.0, 1.0, n).reflectance, truth, 1e-6) << n;
+    EXPECT_NEAR(fresnel_exact(1.0, n, 1.0).reflectance, truth, 1e-6) << n;
+  }
+  // Brewster's angle: only one polarisation is reflected, and the other by ((n^2 - 1)/(n^2 + 1))^2.
+  EXPECT_NEAR(fresnel_exact(std::cos(std::atan(1.5)), 1.0, 1.5).reflectance,
+              0.5 * std::pow(1.25 / 3.25, 2.0), 1e-12);
+}
+
 TEST(Fresnel, IndexOneIsSchlicksFloorAlone) {
   const double cosine = std::cos(85.0 * kPi / 180.0);
   EXPECT_NEAR(fresnel_schlick(cosine, 1.0, 1.0).reflectance, 0.634, 1e-3);

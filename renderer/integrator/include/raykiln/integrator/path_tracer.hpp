@@ -24,7 +24,7 @@ struct TransportScene {
 
 struct PathSettings {
   std::uint64_t seed = 0;
-  int max_depth = 8;  ///< reflections after the first hit
+  int max_depth = 8;  ///< reflections after the first hit; with roulette (in `bsdf`) a hard limit
   int branches = 1;   ///< rays shot from each hit
   PixelMode pixel_mode = PixelMode::kRandom;
   bool emitter_sampling = true;
@@ -60,8 +60,7 @@ class PathTracer {
   PathTracer& operator=(const PathTracer&) = delete;
 
   /// Fills results[i] for starts[i]. Returns false, with results unusable, once stop is requested;
-  /// it is polled before every call into the
-  /// tree.
+  /// it is polled before every call into the tree.
   [[nodiscard]] bool trace(std::span<const PathStart> starts, std::span<PathResult> results,
                            RenderStats& stats, const std::stop_token& stop);
 

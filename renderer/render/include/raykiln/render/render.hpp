@@ -16,17 +16,16 @@
 #include "raykiln/integrator/render_stats.hpp"  // RenderStats
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/shading/bsdf.hpp"  // DirectionSampling
+#include "raykiln/shading/light_model.hpp"
 
 namespace raykiln::render {
-
-enum class LightModel : std::uint8_t { kSeed };
 
 struct RenderSettings {
   int width = 640, height = 480;
   int camera = 0;                ///< index into Scene::cameras
   std::optional<Camera> own_camera{};  ///< used instead of `camera` when set; as in Scene::cameras
-  LightModel light_model = LightModel::kSeed;
-  int max_depth = 8;             ///< reflections after the first hit
+  LightModel light_model = kPhysicalModel;
+  std::optional<int> max_depth{};  ///< reflections after the first hit; unset: see path_limit()
   int branches = 1;              ///< rays shot from each hit; more than 1 is the seed's tree
   std::uint64_t seed = 0;
   PixelMode pixel_mode = PixelMode::kRandom;
@@ -41,12 +40,27 @@ inline constexpr int kLargestDepth = 4096;       ///< reflections after the firs
 inline constexpr int kMostBranches = 64;         ///< rays shot from each hit
 inline constexpr double kMostRaysOfPath = 65536; ///< 1 + b + b^2 + ... of the seed's tree
 
+inline constexpr int kRouletteLimit = 128;  ///< hard limit of paths that roulette ends, if unset
+inline constexpr int kFixedDepth = 8;       ///< depth of all other paths, if unset
+
+/// Reflections after the first hit at which every path ends. What is cut off there while it could go
+/// on is counted as truncated: with roulette next to nothing, else the bias of a fixed depth.
+[[nodiscard]] int path_limit(const RenderSettings& settings);
+
 /// Bytes that a film of this size takes; saturates. What a job must be checked against before.
 [[nodiscard]] std::uint64_t film_bytes(int width, int height);
 
 /// First thing that is wrong with the settings for this scene, or nothing.
 [[nodiscard]] std::optional<std::string> settings_error(const RenderSettings& settings,
                                                         const Scene& scene);
+
+/// What is known to be wrong with a light model in this scene, for people beside the picture.
+struct LightModelWarning {
+  std::string code;     ///< "heavy_tailed" or "not_conserving_refraction"
+  std::string message;
+};
+[[nodiscard]] std::vector<LightModelWarning> light_model_warnings(const LightModel& model,
+                                                                  const Scene& scene);
 
 /// Scene and tree with what shading needs beside them (emitter distribution, ...). Immutable; shared
 /// by all threads.

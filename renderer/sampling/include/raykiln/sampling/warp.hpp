@@ -15,7 +15,10 @@ inline constexpr double kPi = 3.14159265358979323846;
 /// by log1p and expm1. u in [0, 1), e >= 0. The result is in [0, 1).
 [[nodiscard]] double sample_one_minus_cos(double u, double exponent);
 
-/// That density over solid angle, from 1 - cos; 0 where cos <= 0, whatever the exponent.
+/// The same for the cosine itself, density cos/pi: x = u/(1 + sqrt(1 - u)), without log and exp.
+[[nodiscard]] double sample_cosine_one_minus_cos(double u);
+
+/// The density of a cosine power over solid angle, from 1 - cos; 0 where cos <= 0, whatever the exponent.
 [[nodiscard]] double cosine_power_pdf(double one_minus_cos, double exponent);
 
 /// The unit vector at 1 - cos from the unit axis, turned about it by 2 pi v.

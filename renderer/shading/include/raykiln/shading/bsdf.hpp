@@ -1,4 +1,4 @@
-// The seed's BSDF at one point, for one direction of view: value, sampling and density.
+// The BSDF at one point, for one direction of view: value, sampling and density.
 #pragma once
 
 #include <cstdint>
@@ -6,16 +6,17 @@
 #include "raykiln/math/vec.hpp"
 #include "raykiln/sampling/random.hpp"
 #include "raykiln/scene/scene.hpp"
+#include "raykiln/shading/light_model.hpp"
 
 namespace raykiln::render {
 
 /// Uniform sphere is the reference estimator: slow, and hard to get wrong.
 enum class DirectionSampling : std::uint8_t { kBsdf, kUniformSphere };
 
-/// Switches of the light model. The seed samples diffuse reflection with cosine exponent 0.
+/// How values are computed and directions found.
 struct BsdfModel {
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
-  double diffuse_exponent = 0.0;  ///< of the sampling density alone: 0 the seed's, 1 the cosine
+  LightModel light;
 };
 
 /// Probabilities with which sampling picks a lobe; they sum to 1 unless all are 0.
@@ -38,6 +39,7 @@ struct Bsdf {
   double cos_o = 1.0;      ///< n.wo > 0
   double cos_t = 0.0;      ///< cosine of `refracted`; 0 under total reflection
   double eta_o = 1.0, eta_t = 1.0;  ///< index on the side of wo and on the other
+  double radiance_scale = 1.0;  ///< of light refracted towards wo: (eta_o/eta_t)^2, or 1 by the model
   double exponent = 1.0;
   Rgbd diffuse_same{0.0}, diffuse_through{0.0};        ///< values of f, sr^-1
   Rgbd specular_opaque{0.0}, specular_transparent{0.0};  ///< weights of f_ph and f_st
@@ -58,6 +60,7 @@ struct BsdfSample {
   Rgbd weight{0.0};       ///< f cos / pdf, finite for every exponent
   double pdf = 0.0;       ///< of the whole mixture, sr^-1
   Lobe lobe = Lobe::kNone;  ///< kNone: the path ends here
+  double radiance_scale = 1.0;  ///< what of the weight is change of medium and not loss
 };
 
 /// `ng` as wound, `ns` interpolated (or ng); wo points away from the surface. Index 1 in front of
@@ -67,7 +70,13 @@ struct BsdfSample {
 
 [[nodiscard]] BsdfValue evaluate(const Bsdf& bsdf, const Vec3f& wi);
 
-/// Uses dimensions kLobeChoice, kFresnelChoice, kDirectionU and kDirectionV of the vertex.
+/// The numbers in [0, 1) that a direction takes.
+struct DirectionNumbers {
+  double lobe = 0.0, side = 0.0, u = 0.0, v = 0.0;
+};
+[[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const DirectionNumbers& numbers);
+
+/// With dimensions kLobeChoice, kFresnelChoice, kDirectionU and kDirectionV of the vertex.
 [[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const VertexKey& vertex);
 
 }  // namespace raykiln::render

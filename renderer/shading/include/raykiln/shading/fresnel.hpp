@@ -2,6 +2,7 @@
 #pragma once
 
 #include "raykiln/math/vec.hpp"
+#include "raykiln/shading/light_model.hpp"
 
 namespace raykiln::render {
 
@@ -12,10 +13,20 @@ struct FresnelTerm {
   bool total_reflection = false;
 };
 
+/// Fresnel's equations for light without polarisation, (r_s^2 + r_p^2)/2. `cos_from` in [0, 1] on the
+/// side of index `eta_from`. Indices: positive, finite, at most the largest float. Equal indices
+/// reflect nothing at any angle, also at grazing.
+[[nodiscard]] FresnelTerm fresnel_exact(double cos_from, double eta_from, double eta_to);
+
 /// Schlick (1994): R0 + (1 - R0)(1 - cos)^5 with the angle on the rare side, so that it reaches 1 at
-/// the critical angle. `cos_from` in [0, 1] on the side of index `eta_from`. Total internal
-/// reflection is decided here alone, by sin^2 >= 1, never by angles.
+/// the critical angle.
 [[nodiscard]] FresnelTerm fresnel_schlick(double cos_from, double eta_from, double eta_to);
+
+[[nodiscard]] inline FresnelTerm fresnel(FresnelFormula formula, double cos_from, double eta_from,
+                                         double eta_to) {
+  return formula == FresnelFormula::kExact ? fresnel_exact(cos_from, eta_from, eta_to)
+                                           : fresnel_schlick(cos_from, eta_from, eta_to);
+}
 
 /// Direction on the other side of `n` (unit, on the side of `w`) for light leaving along `w`
 /// (Snell's law). Precondition: no total reflection; `cos_t` from the same FresnelTerm.
