@@ -76,6 +76,8 @@ std::variant<json, Problem> parse_json(std::string_view text, std::vector<FieldE
   } catch (const json::parse_error& error) {
     return Problem{400, "invalid_json", "the body is not one JSON value",
                    "byte " + std::to_string(error.byte)};
+  } catch (const json::exception&) {
+    return Problem{400, "invalid_json", "a number is outside the range of double precision"};
   }
 }
 

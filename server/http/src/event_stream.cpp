@@ -1,4 +1,6 @@
+#include <array>
 #include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <mutex>
@@ -23,6 +25,19 @@ class Waker : public std::enable_shared_from_this<Waker> {
     asio::post(connection_->shared.io, [self = shared_from_this()] { self->deliver(); });
   }
 
+  /// Ends the session when the peer closes its side, which else would be noticed at the next
+  /// heartbeat only. What it sends is thrown away: the connection ends with the stream.
+  void watch_peer() {
+    connection_->stream.socket().async_read_some(
+        asio::buffer(ignored_),
+        [self = shared_from_this()](const boost::system::error_code& error, std::size_t) {
+          if (self->connection_ == nullptr) return;
+          if (!error) return self->watch_peer();
+          self->session_->stop();
+          self->connection_->alarm.cancel();
+        });
+  }
+
   void close() {
     const std::lock_guard lock(mutex_);
     connection_ = nullptr;
@@ -39,6 +54,7 @@ class Waker : public std::enable_shared_from_this<Waker> {
   std::mutex mutex_;
   Connection* connection_;
   SseSession* session_;
+  std::array<char, 256> ignored_{};
 };
 
 /// Ties the session to its connection and waker for as long as the stream lasts.
@@ -69,8 +85,11 @@ asio::awaitable<void> run_event_stream(Connection& connection, std::unique_ptr<E
   const Clock& clock = connection.shared.parts.clock;
   SseSession session(connection.shared.settings.sse, clock.steady());
   const Attachment attachment(connection, session);
+  attachment.waker()->watch_peer();
   feed->start([waker = attachment.waker()] { waker->wake(); });
-  if (!co_await write_all(connection, head.append(kSsePreamble))) co_return;
+  head.append(kSsePreamble);
+  const bool begun = co_await write_all(connection, head);
+  if (!begun) co_return;
 
   while (true) {
     const auto action = session.next(clock.steady());
@@ -87,7 +106,8 @@ asio::awaitable<void> run_event_stream(Connection& connection, std::unique_ptr<E
       text = std::move(step.event);
     }
     if (text.empty()) continue;
-    if (!co_await write_all(connection, text)) co_return;
+    const bool sent = co_await write_all(connection, text);
+    if (!sent) co_return;
     session.written(clock.steady());
   }
 }

@@ -34,6 +34,23 @@ struct Exchange {
   std::size_t sent = 0;
 };
 
+// g++ 12 destroys aggregate temporaries of an expression with co_await twice, and evaluates co_await
+// behind || although it should not. Coroutines below therefore build their answers through these
+// functions, and co_await stands alone in its statement.
+Response refusal(int status, const char* code, std::string detail) {
+  Problem problem;
+  problem.status = status;
+  problem.code = code;
+  problem.detail = std::move(detail);
+  if (status == 503) problem.retry_after_s = 5;
+  return to_response(problem);
+}
+
+Response too_large(std::size_t most) {
+  if (most == 0) return refusal(413, "payload_too_large", "this operation takes no body");
+  return refusal(413, "payload_too_large", "the body is over " + std::to_string(most) + " bytes");
+}
+
 /// Stands for "there is nobody to answer"; its status is 0.
 Response nobody() {
   Response response;
@@ -66,9 +83,9 @@ class Session {
   asio::awaitable<void> run() {
     if (shared_.connections.size() > settings_.max_connections) {
       Exchange exchange = begin_exchange();
-      co_await send(exchange, to_response({503, "too_many_connections",
-                                           "the server has all the connections it may have",
-                                           {}, {}, 5}));
+      const Response response =
+          refusal(503, "too_many_connections", "the server has all the connections it may have");
+      co_await send(exchange, response);
       exchange.body_unread = true;
       co_await close(exchange);
       co_return;
@@ -122,13 +139,13 @@ class Session {
       if (read.count > 0) continue;
       inbox.clear();
       if (!read.late) co_return std::nullopt;
-      co_return to_response({408, "request_timeout", "the head did not arrive in time"});
+      co_return refusal(408, "request_timeout", "the head did not arrive in time");
     }
     if (length == 0) length = inbox.size();
     auto parsed = parse_head(std::string_view(inbox).substr(0, length));
     inbox.erase(0, length);
     if (const auto* error = std::get_if<HeadError>(&parsed)) {
-      co_return to_response({error->status, error->code, error->detail});
+      co_return refusal(error->status, error->code.c_str(), error->detail);
     }
     exchange.head = std::move(std::get<RequestHead>(parsed));
     exchange.keep_alive = exchange.head.keep_alive;
@@ -143,7 +160,7 @@ class Session {
   static std::optional<Response> stalled(Exchange& exchange, const ReadOutcome& read) {
     if (!read.late) return std::nullopt;
     return refuse_unread(exchange,
-                         to_response({408, "request_timeout", "no byte of the body for too long"}));
+                         refusal(408, "request_timeout", "no byte of the body for too long"));
   }
 
   std::optional<Response> find_route(Exchange& exchange) {
@@ -209,8 +226,11 @@ class Session {
     account(exchange, 200);
     auto& open = shared_.parts.metrics.gauge("raykiln_http_event_streams", "Event streams that are open");
     open.add(1);
-    if (exchange.head.method == "HEAD") co_await write_all(connection_, head);
-    else co_await run_event_stream(connection_, std::move(feed), std::move(head));
+    if (exchange.head.method == "HEAD") {
+      co_await write_all(connection_, head);
+    } else {
+      co_await run_event_stream(connection_, std::move(feed), std::move(head));
+    }
     open.add(-1);
     co_await close(exchange);
   }
@@ -218,25 +238,19 @@ class Session {
   /// Reads a bounded body whole. Status 0: the peer has gone.
   asio::awaitable<std::optional<Response>> read_body(Exchange& exchange) {
     const std::size_t most = exchange.route->max_body_bytes;
-    const auto too_large = [&] {
-      exchange.keep_alive = false;
-      exchange.body_unread = true;
-      return to_response({413, "payload_too_large",
-                          most == 0 ? "this operation takes no body"
-                                    : "the body is over " + std::to_string(most) + " bytes"});
-    };
-    if (exchange.head.content_length.value_or(0) > most) co_return too_large();
-    if (!co_await say_continue(exchange)) co_return nobody();
+    if (exchange.head.content_length.value_or(0) > most) {
+      co_return refuse_unread(exchange, too_large(most));
+    }
+    const bool wanted = co_await say_continue(exchange);
+    if (!wanted) co_return nobody();
     BodyDecoder decoder(exchange.head);
     while (!decoder.done()) {
       const auto step = decoder.feed(connection_.inbox);
       exchange.request.body.append(step.payload);
       connection_.inbox.erase(0, step.consumed);
-      if (exchange.request.body.size() > most) co_return too_large();
+      if (exchange.request.body.size() > most) co_return refuse_unread(exchange, too_large(most));
       if (decoder.failed()) {
-        exchange.keep_alive = false;
-        exchange.body_unread = true;
-        co_return to_response({400, "bad_request", decoder.error()});
+        co_return refuse_unread(exchange, refusal(400, "bad_request", decoder.error()));
       }
       if (decoder.done() || step.consumed > 0) continue;
       const auto read = co_await read_more(connection_, kReadPiece, after(settings_.body_timeout));
@@ -248,7 +262,8 @@ class Session {
   asio::awaitable<bool> say_continue(Exchange& exchange) {
     if (!exchange.head.expect_continue || !exchange.head.has_body()) co_return true;
     if (!connection_.inbox.empty()) co_return true;
-    co_return co_await write_all(connection_, "HTTP/1.1 100 Continue\r\n\r\n");
+    const bool sent = co_await write_all(connection_, "HTTP/1.1 100 Continue\r\n\r\n");
+    co_return sent;
   }
 
   asio::awaitable<std::optional<Response>> carry_out_upload(Exchange& exchange) {
@@ -259,13 +274,13 @@ class Session {
     if (auto* early = std::get_if<Response>(&start)) co_return refuse_unread(exchange, *early);
     auto plan = std::get<UploadPlan>(std::move(start));
     if (exchange.head.content_length.value_or(0) > plan.max_bytes) {
-      const std::string most = std::to_string(plan.max_bytes);
+      const std::size_t most = plan.max_bytes;
       // The plan is dropped off this thread: it removes files.
       co_await off_thread(shared_.handlers, [&plan] { plan.upload.reset(); return true; });
-      co_return refuse_unread(
-          exchange, to_response({413, "payload_too_large", "the upload is over " + most + " bytes"}));
+      co_return refuse_unread(exchange, too_large(most));
     }
-    if (!co_await say_continue(exchange)) co_return std::nullopt;
+    const bool wanted = co_await say_continue(exchange);
+    if (!wanted) co_return std::nullopt;
     auto body = std::make_unique<UploadBody>(exchange.head, std::move(plan));
     auto response = co_await receive(exchange, *body);
     co_await off_thread(shared_.handlers, [&body] { body.reset(); return true; });
@@ -316,11 +331,13 @@ class Session {
     exchange.sent = with_body ? response.body->size() : 0;
     account(exchange, response.status);
     // One packet for small answers, no copy of large ones.
-    if (with_body && response.body->size() <= kReadPiece) {
-      co_return co_await write_all(connection_, text.append(*response.body));
+    const bool small = with_body && response.body->size() <= kReadPiece;
+    if (small) text.append(*response.body);
+    bool sent = co_await write_all(connection_, text);
+    if (sent && with_body && !small) {
+      sent = co_await write_all(connection_, *response.body);
     }
-    if (!co_await write_all(connection_, text)) co_return false;
-    co_return !with_body || co_await write_all(connection_, *response.body);
+    co_return sent;
   }
 
   void account(const Exchange& exchange, int status) {

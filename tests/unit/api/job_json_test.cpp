@@ -1,0 +1,171 @@
+#include "raykiln/api/job_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace raykiln::server {
+namespace {
+
+using nlohmann::json;
+
+const std::string kScene(64, 'a');
+
+json smallest() {
+  return {{"scene", kScene}, {"width", 64}, {"height", 48}, {"stop", {{"samples", 4}}}};
+}
+
+/// "pointer code" of each wrong field; empty when the request is taken.
+std::vector<std::string> errors_of(const std::string& body) {
+  const auto parsed = parse_job_request(body, JobLimits{});
+  std::vector<std::string> list;
+  if (const auto* problem = std::get_if<Problem>(&parsed)) {
+    for (const auto& error : problem->errors) list.push_back(error.pointer + ' ' + error.code);
+    if (list.empty()) list.push_back(problem->code);
+  }
+  return list;
+}
+
+TEST(JobRequestJson, FillsDefaults) {
+  const auto parsed = parse_job_request(smallest().dump(), JobLimits{});
+  const auto* request = std::get_if<JobRequest>(&parsed);
+  ASSERT_NE(request, nullptr);
+  EXPECT_EQ(request->width, 64);
+  EXPECT_EQ(request->stop.samples, 4U);
+  EXPECT_EQ(request->max_depth, 8);
+  EXPECT_EQ(request->tile, 64);
+  EXPECT_EQ(request->priority, 10);
+  EXPECT_EQ(std::get<int>(request->camera), 0);
+}
+
+TEST(JobRequestJson, ComesBackAsItWent) {
+  JobRequest request;
+  request.scene = kScene;
+  request.name = "n\xC3\xA4me";
+  request.camera = OwnCamera{{1, 2, 3}, {0, 0.5, -1e-3}, {0, 0, 1}, 33.5};
+  request.width = 16384;
+  request.height = 1;
+  request.stop.samples = 1048576;
+  request.max_depth = 0;
+  request.seed = 9007199254740991U;
+  request.tile = 1;
+  request.priority = 100;
+  request.pixel_mode = PixelMode::kCentre;
+  request.direction_sampling = DirectionSampling::kUniformSphere;
+  request.emitter_sampling = false;
+  for (const CameraChoice& camera : {CameraChoice{7}, CameraChoice{std::string("front")}, request.camera}) {
+    request.camera = camera;
+    const auto text = job_request_json(request);
+    const auto parsed = parse_job_request(text, JobLimits{});
+    ASSERT_TRUE(std::holds_alternative<JobRequest>(parsed)) << text;
+    EXPECT_EQ(job_request_json(std::get<JobRequest>(parsed)), text);
+  }
+}
+
+TEST(JobRequestJson, NamesEveryWrongField) {
+  const auto check = [](const char* field, const json& value, const std::string& wanted) {
+    json body = smallest();
+    body[json::json_pointer(field)] = value;
+    EXPECT_EQ(errors_of(body.dump()), std::vector<std::string>{wanted}) << field << ' ' << value;
+  };
+  check("/width", 0, "/width out_of_range");
+  check("/width", 16385, "/width out_of_range");
+  check("/width", -1, "/width out_of_range");
+  check("/width", 1.5, "/width out_of_range");
+  check("/width", 1e300, "/width out_of_range");
+  check("/width", "64", "/width wrong_type");
+  check("/width", nullptr, "/width wrong_type");
+  check("/scene", "xyz", "/scene invalid_value");
+  check("/stop", 4, "/stop wrong_type");
+  check("/stop/time", 4, "/stop/time unknown_field");
+  check("/stop/samples", 0, "/stop/samples out_of_range");
+  check("/a~1b", 4, "/a~1b unknown_field");
+  check("/light_model", "physical", "/light_model invalid_value");
+  check("/name", std::string(201, 'a'), "/name out_of_range");
+  check("/name", "a\nb", "/name invalid_value");
+  check("/seed", 9007199254740992U, "/seed out_of_range");
+  check("/camera", json::array(), "/camera wrong_type");
+  check("/camera", -1, "/camera out_of_range");
+  check("/camera", {{"eye", {0, 0, 0}}}, "/camera/look_at missing_field");
+  check("/camera", {{"eye", {0, 0}}, {"look_at", {0, 0, 0}}}, "/camera/eye wrong_type");
+  check("/camera", {{"eye", {0, 0, 0}}, {"look_at", {0, 0, 1}}, {"fov_deg", 180}}, "/camera/fov_deg out_of_range");
+  check("/emitter_sampling", 1, "/emitter_sampling wrong_type");
+  EXPECT_EQ(errors_of("{}").size(), 4U);
+}
+
+TEST(JobRequestJson, TakesWholeNumbersThatAreWrittenWithAPoint) {
+  json body = smallest();
+  body["width"] = 64.0;
+  EXPECT_TRUE(errors_of(body.dump()).empty());
+}
+
+TEST(JobRequestJson, RefusesWhatIsNoJson) {
+  for (const std::string text : {"", "{", "nul", "{}{}", "{\"a\":1,}", "\xFF", "NaN"}) {
+    EXPECT_EQ(errors_of(text), std::vector<std::string>{"invalid_json"}) << text;
+  }
+  EXPECT_EQ(errors_of("[]"), std::vector<std::string>{" wrong_type"});
+  EXPECT_EQ(errors_of(std::string(50000, '[')), std::vector<std::string>{"invalid_json"});
+  const auto twice = errors_of("{\"width\":1,\"width\":2," + smallest().dump().substr(1));
+  EXPECT_EQ(twice.front(), "/width duplicate_field");
+}
+
+JobSnapshot snapshot() {
+  JobSnapshot job;
+  job.id = "j_1";
+  job.request.scene = kScene;
+  job.state = JobState::kRendering;
+  job.revision = 9;
+  job.image_revision = 7;
+  job.progress.samples_done = 50;
+  job.progress.samples_target = 100;
+  job.progress.samples_per_pixel = 2.0;
+  job.remaining_seconds = 1.5;
+  job.created = WallTime(std::chrono::milliseconds(1500));
+  return job;
+}
+
+TEST(JobJson, IsReadBackByClients) {
+  const auto view = parse_job_view(job_json(snapshot()));
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->id, "j_1");
+  EXPECT_EQ(view->state, "rendering");
+  EXPECT_EQ(view->revision, 9U);
+  EXPECT_DOUBLE_EQ(view->fraction, 0.5);
+  EXPECT_EQ(view->remaining_seconds, 1.5);
+  EXPECT_TRUE(view->has_image);
+  EXPECT_TRUE(view->error.empty());
+}
+
+TEST(JobJson, FollowsTheContract) {
+  auto job = snapshot();
+  auto value = json::parse(job_json(job));
+  EXPECT_EQ(value["created_at"], "1970-01-01T00:00:01.500Z");
+  EXPECT_EQ(value["image"]["png"], "/v1/jobs/j_1/image?format=png&rev=7");
+  EXPECT_TRUE(value["prepare"].is_null());
+  EXPECT_TRUE(value["started_at"].is_null());
+  job.state = JobState::kFailed;
+  job.error = Error{ErrorKind::kInternal, "render_failed", "why", "where"};
+  value = json::parse(job_json(job));
+  EXPECT_EQ(value["error"]["code"], "render_failed");
+  EXPECT_EQ(value["error"]["status"], 500);
+  EXPECT_TRUE(value["remaining_seconds"].is_null());
+  EXPECT_EQ(parse_job_view(job_json(job))->error, "render_failed: why (where)");
+}
+
+TEST(JobJson, IsOneLineEvenWithHostileText) {
+  auto job = snapshot();
+  job.request.name = "a\nb\r\xFF\xE2\x80\xA8";
+  const auto text = job_json(job);
+  EXPECT_EQ(text.find_first_of("\r\n"), std::string::npos);
+  EXPECT_TRUE(parse_job_view(text));
+}
+
+TEST(JobJson, RefusesWhatIsNoJob) {
+  EXPECT_FALSE(parse_job_view("{}"));
+  EXPECT_FALSE(parse_job_view("not json"));
+  EXPECT_FALSE(parse_job_page("{\"jobs\":[{}],\"next_cursor\":null}"));
+  EXPECT_EQ(parse_job_page(job_page_json({snapshot()}, "c"))->next_cursor, "c");
+}
+
+}  // namespace
+}  // namespace raykiln::server

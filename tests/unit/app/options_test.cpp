@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "raykiln/app/cli.hpp"
+#include "raykiln/app/daemon.hpp"
+
+namespace raykiln::server {
+namespace {
+
+ParsedDaemon daemon(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "raykilnd");
+  return parse_daemon_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+ParsedCli cli(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "raykiln");
+  return parse_cli_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+TEST(DaemonOptions, ReadsAddresses) {
+  EXPECT_EQ(daemon({}).options.config.http.port, 8080);
+  const auto v6 = daemon({"--listen", "[::1]:0"});
+  EXPECT_EQ(v6.options.config.http.address, "::1");
+  EXPECT_EQ(v6.options.config.http.port, 0);
+  EXPECT_EQ(daemon({"--listen", "9000"}).options.config.http.port, 9000);
+}
+
+TEST(DaemonOptions, RefusesOtherMachinesUnlessTold) {
+  EXPECT_EQ(daemon({"--listen", "0.0.0.0:8080"}).exit_code, 2);
+  EXPECT_EQ(daemon({"--listen", "0.0.0.0:8080", "--allow-remote"}).exit_code, -1);
+}
+
+TEST(DaemonOptions, RefusesNonsense) {
+  for (const char* text : {"127.0.0.1", "127.0.0.1:x", "127.0.0.1:70000", ":"}) {
+    EXPECT_EQ(daemon({"--listen", text}).exit_code, 2) << text;
+  }
+  EXPECT_EQ(daemon({"--unknown"}).exit_code, 2);
+  EXPECT_EQ(daemon({"--cache-bytes", "512MB"}).options.config.workers.scene_cache_bytes, 512U << 20U);
+}
+
+TEST(CliOptions, ReadsRender) {
+  const auto parsed = cli({"render", "a.obj", "-o", "a.exr", "-o", "a.png", "--size", "320x200", "--samples", "7",
+                           "--camera", "2", "--threads", "3"});
+  ASSERT_EQ(parsed.exit_code, -1);
+  EXPECT_EQ(parsed.options.command, "render");
+  EXPECT_EQ(parsed.options.outputs.size(), 2U);
+  EXPECT_EQ(parsed.options.picture.request.width, 320);
+  EXPECT_EQ(parsed.options.picture.request.height, 200);
+  EXPECT_EQ(parsed.options.picture.request.stop.samples, 7U);
+  EXPECT_EQ(std::get<int>(parsed.options.picture.request.camera), 2);
+  EXPECT_EQ(std::get<std::string>(cli({"submit", "a.obj", "--camera", "2nd"}).options.picture.request.camera), "2nd");
+}
+
+TEST(CliOptions, UsageErrorsAreTwo) {
+  const std::vector<std::vector<const char*>> rows = {
+      {}, {"paint"}, {"render"}, {"render", "a.obj"}, {"render", "a.obj", "-o", "a.jpg"},
+      {"render", "a.obj", "-o", "a.exr", "--size", "320"}, {"render", "a.obj", "-o", "a.exr", "--samples", "0"},
+      {"watch"}};
+  for (const auto& row : rows) EXPECT_EQ(cli(row).exit_code, 2);
+  EXPECT_EQ(cli({"--help"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace raykiln::server
