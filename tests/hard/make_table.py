@@ -15,7 +15,7 @@ from pathlib import Path
 HEADER = """# Hard cases
 Inputs on which renderers are known to break, and scenes whose answer is known in closed form; one
 family of tests per entry, named by its id. A row is one test: what went in, what is promised, what
-was measured. "0 of n" bounds a rate by 3/n at 95 %. Time is processor time. This file is generated:
+was measured. "Falls short" marks a promise that is not kept yet: its test holds today's figure. "0 of n" bounds a rate by 3/n at 95 %. Time is processor time. This file is generated:
 
     rm -f build/hard.jsonl
     RAYKILN_HARD_REPORT=$PWD/build/hard.jsonl ctest --test-dir build/test -L hard
@@ -62,6 +62,8 @@ def table(rows):
     lines = ["", "| id | input | promise | measured | time, s | mode |", "|---|---|---|---|---|---|"]
     for row in rows:
         mark = "" if row["passed"] else " **FAILED**"
+        if row["falls_short"]:
+            mark += " **falls short**"
         lines.append("| {} | {} | {} | {}{} | {:.1f} | {} |".format(
             row["id"], cell(row["input"]), cell(row["promise"]), cell(row["measured"]), mark,
             row["seconds"], cell(row["mode"])))
@@ -71,9 +73,10 @@ def table(rows):
 def summary(rows):
     entries = {row["id"] for row in rows}
     failed = sum(not row["passed"] for row in rows)
+    short = sum(row["falls_short"] for row in rows)
     run = "long run" if rows and all(row["long"] for row in rows) else "usual run"
     seconds = sum(row["seconds"] for row in rows)
-    return (f"\n{len(entries)} entries, {len(rows)} rows, {failed} failed; {run}, "
+    return (f"\n{len(entries)} entries, {len(rows)} rows, {failed} failed, {short} falling short; {run}, "
             f"{seconds:.0f} s of one processor.\n")
 
 

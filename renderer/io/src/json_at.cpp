@@ -59,6 +59,17 @@ bool within_limits(std::string_view text, const std::string& file, Diagnostics& 
                           file, "", "keep geometry in binary buffers");
 }
 
+// The parser's message ends with the number in quotes but does not say where it is: the line where
+// it stands first.
+std::string place_of_number(std::string_view text, std::string_view message) {
+  const std::size_t close = message.rfind('\'');
+  if (close == std::string_view::npos || close == 0) return "";
+  const std::size_t open = message.rfind('\'', close - 1);
+  if (open == std::string_view::npos) return "";
+  const std::size_t at = text.find(message.substr(open + 1, close - open - 1));
+  return at == std::string_view::npos ? "" : line_text(line_of(text, at));
+}
+
 }  // namespace
 
 std::optional<JsonDocument> JsonDocument::parse(std::string_view text, const std::string& file,
@@ -73,8 +84,9 @@ std::optional<JsonDocument> JsonDocument::parse(std::string_view text, const std
     diagnostics.fail(ImportErrorCode::kInvalidJson,
                      "this is not JSON (byte " + std::to_string(at) + ")", file,
                      line_text(line_of(text, at)));
-  } catch (const Json::exception&) {  // a number that no double can hold
-    diagnostics.fail(ImportErrorCode::kNotFinite, "a number in the JSON overflows", file);
+  } catch (const Json::exception& error) {  // a number that no double can hold
+    diagnostics.fail(ImportErrorCode::kNotFinite, "a number in the JSON overflows", file,
+                     place_of_number(text, error.what()));
   }
   return std::nullopt;
 }

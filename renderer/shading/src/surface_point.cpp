@@ -24,6 +24,31 @@ Vec3f interpolated_normal(const TriangleMesh& mesh, std::uint32_t id, double u, 
   return squared > 0.0 ? Vec3f(sum / std::sqrt(squared)) : ng;
 }
 
+/// How far from the edges of its triangle a ray starts, in clearances.
+constexpr double kFromEdges = 4.0;
+
+// Where two walls meet in a concave corner, the offset along one normal may leave the origin in or
+// behind the other wall, and the ray escapes. So a ray that leaves a point near an edge starts
+// farther inside of its triangle: no barycentric is below kFromEdges * clearance / height. Then it
+// starts clear of every wall that meets this one at more than atan(1/kFromEdges) = 14 degrees.
+// `twice_area` is the length of the cross product of two sides.
+Vec3d away_from_edges(const std::array<Vec3d, 3>& p, const std::array<double, 3>& b,
+                      double twice_area, double clearance) {
+  std::array<double, 3> least{};
+  bool near = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d edge = p[(i + 2) % 3] - p[(i + 1) % 3];
+    least[i] = kFromEdges * clearance * std::sqrt(dot(edge, edge)) / twice_area;
+    near = near || b[i] < least[i];
+  }
+  if (!near) return Vec3d(0.0);
+  for (double& l : least) l = std::min(l, 1.0 / 3.0);
+  const double rest = 1.0 - least[0] - least[1] - least[2];
+  Vec3d shift(0.0);
+  for (std::size_t i = 0; i < 3; ++i) shift += (least[i] + (rest - 1.0) * b[i]) * p[i];
+  return shift;
+}
+
 float round_away(double value, double offset) {
   if (offset > 0.0) return next_up(static_cast<float>(value));
   if (offset < 0.0) return next_down(static_cast<float>(value));
@@ -43,7 +68,9 @@ SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u,
   const std::array<double, 3> b{1.0 - u - v, u, v};
   SurfacePoint point;
   point.p = b[0] * p[0] + b[1] * p[1] + b[2] * p[2];
-  point.ng = normalize(cross(p[1] - p[0], p[2] - p[0]));
+  const Vec3d normal = cross(p[1] - p[0], p[2] - p[0]);
+  const double twice_area = length(normal);
+  point.ng = normal / twice_area;
   point.ns = interpolated_normal(mesh, id, u, v, Vec3f(point.ng));
   point.material = mesh.material_ids[id];
 
@@ -52,13 +79,14 @@ SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u,
   double reach = 0.0;
   for (const Vec3d& vertex : p) reach = std::max(reach, largest_component(vertex - point.p));
   point.clearance = dot(abs(point.ng), bound) + gamma_bound(4) * reach;
+  point.inwards = away_from_edges(p, b, twice_area, point.clearance);
   return point;
 }
 
 Vec3f ray_origin(const SurfacePoint& point, const Vec3d& direction) {
   const double side = dot(point.ng, direction) < 0.0 ? -1.0 : 1.0;
   const Vec3d offset = side * point.clearance * point.ng;
-  const Vec3d moved = point.p + offset;
+  const Vec3d moved = point.p + point.inwards + offset;
   return {round_away(moved.x, offset.x), round_away(moved.y, offset.y),
           round_away(moved.z, offset.z)};
 }

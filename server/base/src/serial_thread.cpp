@@ -18,8 +18,9 @@ bool SerialThread::post(std::function<void()> closure) {
     const std::scoped_lock lock(mutex_);
     if (stopping_) return false;
     ready_.push_back(std::move(closure));
+    // Under the lock: once it is released, this may be the post after which the owner ends us.
+    wake_.notify_one();
   }
-  wake_.notify_one();
   return true;
 }
 
@@ -28,8 +29,8 @@ bool SerialThread::post_after(std::chrono::milliseconds delay, std::function<voi
     const std::scoped_lock lock(mutex_);
     if (stopping_) return false;
     delayed_.emplace(std::chrono::steady_clock::now() + delay, std::move(closure));
+    wake_.notify_one();
   }
-  wake_.notify_one();
   return true;
 }
 

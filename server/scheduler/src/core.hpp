@@ -52,7 +52,11 @@ class Scheduler::Core {
   Core(const Config& config, const Parts& parts);
 
   /// Runs `step` on the strand; from any thread. False when it has stopped.
-  bool post(std::function<void()> step);
+  bool post(std::function<void()> step) { return post_on(strand_, this, std::move(step)); }
+  /// The same for callbacks that may come after the scheduler is gone: they hold the strand, which
+  /// drops the step then.
+  static bool post_on(const std::shared_ptr<SerialThread>& strand, Core* core,
+                      std::function<void()> step);
 
   // core_jobs.cpp
   void submit(SubmitJob submission, const Reply<SubmittedJob>& reply);
@@ -156,7 +160,7 @@ class Scheduler::Core {
   void note_busy();
 
   // Last: their threads use what is above. The disk's and the intake's threads post to the strand.
-  SerialThread strand_;
+  std::shared_ptr<SerialThread> strand_;
   SerialThread disk_;
   SerialThread intake_;
 };

@@ -68,7 +68,7 @@ void Scheduler::Core::load_image(const JobSnapshot& job, const Reply<JobImagePtr
     if (!stored) return reply(stored.error());
     auto image = framed(job);
     image->image = render::Image{stored->width, stored->height, std::move(stored->rgb)};
-    strand_.post([this, image] { remember(image); });
+    strand_->post([this, image] { remember(image); });
     reply(JobImagePtr(image));
   });
 }

@@ -17,17 +17,19 @@ Scheduler::Core::Core(const Config& config, const Parts& parts)
       tasks_(parts.metrics.counter("raykiln_tasks_total", "tasks merged into films")),
       task_seconds_(parts.metrics.histogram("raykiln_task_seconds", "time of one task on a worker",
                                             {0.001, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0})),
-      strand_("scheduler"),
+      strand_(std::make_shared<SerialThread>("scheduler")),
       disk_("disk"),
       intake_("intake") {}
 
-bool Scheduler::Core::post(std::function<void()> step) {
-  return strand_.post([this, run = std::move(step)] {
+bool Scheduler::Core::post_on(const std::shared_ptr<SerialThread>& strand, Core* core,
+                              std::function<void()> step) {
+  // `core` is read by the closure only, and those run while the scheduler lives.
+  return strand->post([core, run = std::move(step)] {
     try {
       run();
     } catch (const std::exception& fault) {
       // The border of one step: the daemon outlives it.
-      parts_.log.error("fault_on_the_strand", {{"why", fault.what()}});
+      core->parts_.log.error("fault_on_the_strand", {{"why", fault.what()}});
     }
   });
 }
@@ -126,7 +128,7 @@ void Scheduler::Core::shutdown(std::chrono::milliseconds drain) {
   }
   intake_.stop();
   disk_.stop();
-  strand_.stop();
+  strand_->stop();
 }
 
 }  // namespace raykiln::server

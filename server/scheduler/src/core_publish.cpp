@@ -121,7 +121,7 @@ void Scheduler::Core::publish_soon(LiveJob& job) {
                              config_.scheduler.publish_interval -
                                  std::chrono::duration_cast<milliseconds>(since));
   const JobId id = job.snapshot.id;
-  strand_.post_after(wait, [this, id] {
+  strand_->post_after(wait, [this, id] {
     LiveJob* late = find(id);
     if (late == nullptr) return;
     late->publish_planned = false;

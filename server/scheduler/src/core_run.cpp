@@ -84,16 +84,16 @@ void Scheduler::Core::start_preparing(LiveJob& job) {
   transition(job, JobEvent::kStart);
   job.ticket = parts_.cache.prepare(
       job.snapshot.request.scene,
-      [this, id](PrepareProgress progress) {
-        post([this, id, progress] {
+      [this, strand = strand_, id](PrepareProgress progress) {
+        post_on(strand, this, [this, id, progress] {
           LiveJob* waiting = find(id);
           if (waiting == nullptr || waiting->snapshot.state != JobState::kPreparing) return;
           waiting->snapshot.prepare = progress;
           publish_soon(*waiting);
         });
       },
-      [this, id](Result<ReadyScene> scene) {
-        post([this, id, ready = std::move(scene)]() mutable { prepared(id, std::move(ready)); });
+      [this, strand = strand_, id](Result<ReadyScene> scene) {
+        post_on(strand, this, [this, id, ready = std::move(scene)]() mutable { prepared(id, std::move(ready)); });
       });
 }
 
@@ -161,8 +161,8 @@ void Scheduler::Core::dispatch_one(LiveJob& job) {
   task.stop = job.stop.get_token();
   ++tasks_in_flight_;
   ++job.in_flight;
-  parts_.executor.start(std::move(task), [this](TileOutcome outcome) {
-    post([this, held = std::move(outcome)]() mutable { finished_task(std::move(held)); });
+  parts_.executor.start(std::move(task), [this, strand = strand_](TileOutcome outcome) {
+    post_on(strand, this, [this, held = std::move(outcome)]() mutable { finished_task(std::move(held)); });
   });
 }
 

@@ -55,7 +55,7 @@ void Scheduler::Core::import_scene(std::shared_ptr<std::unique_ptr<SceneUpload>>
     result = Error{ErrorKind::kInternal, "internal", fault.what(), ""};
   }
   upload->reset();  // a refused upload is gone before its answer
-  strand_.post([this] { --pending_imports_; });
+  strand_->post([this] { --pending_imports_; });
   reply(std::move(result));
 }
 
@@ -98,8 +98,8 @@ void Scheduler::Core::prepare_scene(const std::string& id, const Reply<SceneView
       return reply(Error{ErrorKind::kTooMany, "too_many_uploads", "too many scenes are being prepared",
                          "", 5});
     }
-    prepares_[id] = parts_.cache.prepare(id, {}, [this, id](const Result<ReadyScene>&) {
-      strand_.post([this, id] { prepares_.erase(id); });
+    prepares_[id] = parts_.cache.prepare(id, {}, [this, strand = strand_, id](const Result<ReadyScene>&) {
+      post_on(strand, this, [this, id] { prepares_.erase(id); });
     });
   }
   reply(view(std::move(*record)));

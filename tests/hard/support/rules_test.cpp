@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/mesh_generators.hpp"
+#include "support/statistics.hpp"
 
 namespace raykiln::hard {
 namespace {
@@ -46,6 +47,24 @@ TEST(RuleR2, FalseAlarmsAreRare) {
 }
 
 TEST(RuleR3, RuleOfThree) { EXPECT_DOUBLE_EQ(rate_bound(1000000), 3e-6); }
+
+TEST(RuleR4, ChiSquareAcceptsTheDensityAndRejectsOneWithoutItsWeight) {
+  TestRandom random(4);
+  std::vector<double> seen(1000, 0.0), expected(1000, 0.0), planted(1000, 0.0);
+  constexpr double kN = 1e6;
+  for (int i = 0; i < 1'000'000; ++i) {  // density 2 x on [0, 1): the last cells of 1000 are fullest
+    seen[static_cast<std::size_t>(1000.0 * std::sqrt(static_cast<double>(random.uniform())))] += 1.0;
+  }
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const double x = (static_cast<double>(i) + 0.5) / 1000.0;
+    expected[i] = kN * 2.0 * x / 1000.0;
+    planted[i] = kN * (0.99 * 2.0 * x + 0.01) / 1000.0;
+  }
+  const double level = render::support::sidak_level(100.0);
+  EXPECT_NEAR(level, 1.005e-4, 1e-6);
+  EXPECT_GT(render::support::chi_square_p(seen, expected), level);
+  EXPECT_LT(render::support::chi_square_p(seen, planted), level);
+}
 
 TEST(RuleR5, SidakBand) {
   EXPECT_NEAR(sidak_z(1.0), 2.5758, 1e-3);

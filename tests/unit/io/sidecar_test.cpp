@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"truncated", "{\n\"scale\": 1,\n", Code::kInvalidJson, "line 3"},
         Broken{"comment", "{} // no", Code::kInvalidJson, "line 1"},
         Broken{"nan", "{\"scale\": NaN}", Code::kInvalidJson, "line 1"},
-        Broken{"overflow", "{\"scale\": 1e999}", Code::kNotFinite, ""},
+        Broken{"overflow", "{\n\"scale\": 1e999}", Code::kNotFinite, "line 2"},
         Broken{"not_utf8", "{\"scene\": \"\xFF\"}", Code::kInvalidJson, "line 1"},
         Broken{"deep", "\n" + std::string(100'000, '['), Code::kJsonTooDeep, "line 2"},
         Broken{"deep_objects", [] {

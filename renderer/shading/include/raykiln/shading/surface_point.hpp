@@ -13,6 +13,7 @@ struct SurfacePoint {
   Vec3d ng{0.0};      ///< unit, as wound
   Vec3f ns{0.0F};     ///< unit; interpolated where all three corners have a normal, else ng
   double clearance = 0.0;  ///< distance from the plane at which a ray misses its own triangle
+  Vec3d inwards{0.0};  ///< within the plane, away from an edge that is close; else 0
   std::uint32_t material = 0;
 };
 
@@ -21,7 +22,7 @@ struct SurfacePoint {
                                          double v);
 
 /// Origin of a ray that leaves `point` towards `direction`: moved along the geometric normal by
-/// the clearance, to the side of the direction, and rounded outwards. No absolute length enters,
+/// the clearance, to the side of the direction, away from near edges, and rounded outwards. No absolute length enters,
 /// so that scaling a scene by a power of two scales origins exactly.
 [[nodiscard]] Vec3f ray_origin(const SurfacePoint& point, const Vec3d& direction);
 
