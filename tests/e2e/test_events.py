@@ -28,7 +28,7 @@ def test_the_first_event_is_a_full_snapshot_and_ids_rise(api, samples):
 
 
 def test_at_most_ten_events_a_second(api, samples):
-    job = api.job(samples["grid"], width=256, height=256, stop={"samples": 256})
+    job = api.job(samples["grid"], width=256, height=256, stop={"samples": 64})
     with api.events(job) as stream:
         times = [event.arrived for event in stream.events()]
     assert len(times) >= 3
@@ -83,15 +83,18 @@ def test_heartbeat_in_silence(launch):
 def test_a_reader_that_never_reads_slows_nothing_and_gets_the_final_state(launch):
     api = launch()
     scene = api.scene(scenes.grid_zip(60))
-    request = {"width": 512, "height": 512, "stop": {"samples": 48}}
-    alone = api.wait(api.job(scene, **request))["elapsed_seconds"]
-    job = api.job(scene, **request)
-    stalled = [api.events(job, receive_buffer=2048) for _ in range(20)]
-    watched = api.wait(job)
-    assert watched["elapsed_seconds"] <= 1.25 * alone + 0.25
-    for stream in stalled:
-        with stream:
-            assert stream.last().data["revision"] == watched["revision"]
+    request = {"width": 400, "height": 300, "stop": {"samples": 32}}
+    alone, watched = [], []
+    for _ in range(3):  # The best of three: other work on the machine only ever adds time.
+        alone.append(api.wait(api.job(scene, **request))["elapsed_seconds"])
+        job = api.job(scene, **request)
+        stalled = [api.events(job, receive_buffer=2048) for _ in range(20)]
+        final = api.wait(job)
+        watched.append(final["elapsed_seconds"])
+        for stream in stalled:
+            with stream:
+                assert stream.last().data["revision"] == final["revision"]
+    assert min(watched) <= 1.25 * min(alone) + 0.25, (alone, watched)
 
 
 @pytest.mark.measured
@@ -100,20 +103,26 @@ def test_memory_of_many_readers_is_bounded(launch):
     job = api.job(api.scene(scenes.grid_zip(60)), width=256, height=256,
                   stop={"samples": 1048576})
     api.wait_until(job, lambda snapshot: snapshot["image"])
-    count, before = 200, api.daemon.status_kib()
+    count, before = 200, peak_kib(api)
     streams = [api.events(job, receive_buffer=2048) for _ in range(count)]
     for stream in streams:
         stream.read_head()
-    time.sleep(1.5)
-    first = api.daemon.status_kib()
-    time.sleep(3)
-    later = api.daemon.status_kib()
+    first, later = peak_kib(api), peak_kib(api)
     api.cancel(job)
     for stream in streams:
         assert stream.last().data["state"] == "cancelled"
         stream.close()
-    assert (first - before) / count <= 128, f"{(first - before) / count:.0f} KiB a client"
-    assert later - first <= 4096, f"grew by {later - first} KiB in 3 s without a reader"
+    assert (first - before) / count <= 64, f"{(first - before) / count:.0f} KiB a client"
+    assert later - first <= 8192, f"grew by {later - first} KiB in 3 s without a reader"
+
+
+def peak_kib(api, seconds=3.0) -> int:
+    """The largest of many looks: a picture being encoded comes and goes with some MiB."""
+    deadline, peak = time.monotonic() + seconds, 0
+    while time.monotonic() < deadline:
+        peak = max(peak, api.daemon.status_kib())
+        time.sleep(0.02)
+    return peak
 
 
 def test_the_stream_ends_without_a_final_event_when_the_server_stops(launch):

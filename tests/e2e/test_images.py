@@ -83,13 +83,13 @@ def test_parameters_are_checked(api, done):
 
 def test_partial_then_final(launch):
     api = launch()
-    job = api.job(api.scene(scenes.grid_zip(80)), width=400, height=300, stop={"samples": 96})
+    job = api.job(api.scene(scenes.grid_zip(80)), width=320, height=240, stop={"samples": 48})
     seen = api.wait_until(job, lambda snapshot: snapshot["image"])
     assert seen["progress"]["fraction"] < 1, "the first picture must come before the last sample"
     partial = api.get(seen["image"]["png"])
     assert partial.status_code == 200
     picture = read_png(partial.content)
-    assert (picture.width, picture.height) == (400, 300)
+    assert (picture.width, picture.height) == (320, 240)
     assert int(partial.headers["Raykiln-Revision"]) >= seen["image"]["revision"]
     final = api.wait(job)
     whole = api.image(job, rev=seen["image"]["revision"])

@@ -13,19 +13,12 @@ std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string place(const SceneWarning& warning) {
-  if (warning.where.empty()) return warning.file;
-  const bool is_line = warning.where.starts_with("line ");
-  const std::string at = is_line ? warning.where.substr(5) : warning.where;
-  return warning.file.empty() ? at : warning.file + ':' + at;
-}
-
 Json warnings_value(const SceneReport& report) {
   Json list = Json::array();
   for (const auto& warning : report.warnings) {
     list.push_back({{"code", warning.code},
                     {"message", warning.message},
-                    {"where", place(warning)},
+                    {"where", warning.where},
                     {"count", warning.count}});
   }
   return list;
