@@ -47,6 +47,11 @@ struct KeyWatch {
   }
 };
 
+bool is_whole(const json& value) {
+  if (!value.is_number_float()) return value.is_number();
+  return value.get<double>() == std::floor(value.get<double>());
+}
+
 /// A JSON integer, or a number without a fraction, which JSON Schema takes as one too.
 std::optional<std::uint64_t> as_natural(const json& value) {
   if (value.is_number_unsigned()) return value.get<std::uint64_t>();
@@ -106,7 +111,7 @@ std::optional<std::uint64_t> FieldReader::natural(const char* name, Bounds bound
   const std::string range = "must be an integer from " + std::to_string(bounds.least) + " to " +
                             std::to_string(bounds.most);
   const auto number = as_natural(*value);
-  if (!value->is_number()) error(name, "wrong_type", range);
+  if (!is_whole(*value)) error(name, "wrong_type", range);
   else if (!number || *number < bounds.least || *number > bounds.most) error(name, "out_of_range", range);
   else return number;
   return std::nullopt;

@@ -71,7 +71,7 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/width", 0, "/width out_of_range");
   check("/width", 16385, "/width out_of_range");
   check("/width", -1, "/width out_of_range");
-  check("/width", 1.5, "/width out_of_range");
+  check("/width", 1.5, "/width wrong_type");
   check("/width", 1e300, "/width out_of_range");
   check("/width", "64", "/width wrong_type");
   check("/width", nullptr, "/width wrong_type");

@@ -13,7 +13,7 @@ inline constexpr std::string_view kSsePreamble = "retry: 2000\n\n";
 inline constexpr std::string_view kSseHeartbeat = ": heartbeat\n\n";
 
 struct SseTiming {
-  std::chrono::milliseconds least_gap{100};     ///< between two events
+  std::chrono::milliseconds least_gap{25};      ///< between two events
   std::chrono::milliseconds heartbeat{15'000};  ///< longest silence
 };
 
