@@ -14,7 +14,9 @@ namespace raykiln::render::io {
 namespace {
 
 constexpr std::size_t kItemsPerPoll = 1 << 16;
-constexpr float kDefaultBackground = 0.8F;
+constexpr float kDefaultBackground = 0.3F;
+/// W m^-2 that the default lamp sends to the middle of the scene: white reflects about radiance 1.
+constexpr double kDefaultLampIrradiance = 3.0;
 constexpr double kDefaultFovRad = 0.7;
 
 class Finisher {
@@ -229,9 +231,22 @@ class Finisher {
     }
     scene_.background = Rgb(kDefaultBackground);
     diagnostics_.warn(ImportWarningCode::kDefaultBackground,
-                      "nothing in the scene gives light: a grey background of 0.8 lights it",
+                      "nothing in the scene gives light: a grey background of 0.3 and a lamp above "
+                      "on the left do",
                       report_.root_file);
+    add_default_lamp();
     return true;
+  }
+
+  // Three radii of the bounds away, so that every side of a model is shaded differently; scenes of
+  // any size look the same.
+  void add_default_lamp() {
+    const Vec3d lo(scene_.bounds.lo);
+    const Vec3d hi(scene_.bounds.hi);
+    const Vec3d way = 1.5 * length(hi - lo) * normalize(Vec3d(-0.6, 1.0, 0.7));
+    const auto intensity = static_cast<float>(kDefaultLampIrradiance * dot(way, way));
+    if (!(intensity > 0.0F)) return;
+    scene_.point_lights.push_back({"default", Vec3f(0.5 * (lo + hi) + way), Rgb(intensity)});
   }
 
   [[nodiscard]] bool any_emission() const {

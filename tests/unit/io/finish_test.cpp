@@ -100,9 +100,13 @@ TEST(FlatTriangles, CollapsedOnesAreToldApart) {
 
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-TEST(Defaults, ASceneWithoutLightGetsAGreyBackground) {
+TEST(Defaults, ASceneWithoutLightGetsAGreyBackgroundAndALamp) {
   const auto imported = expect_scene({{"a.obj", kTriangle}});
-  EXPECT_EQ(imported.scene.background, Rgb(0.8F));
+  EXPECT_EQ(imported.scene.background, Rgb(0.3F));
+  ASSERT_EQ(imported.scene.point_lights.size(), 1U);
+  const auto& lamp = imported.scene.point_lights[0];
+  const Vec3d way = Vec3d(lamp.position) - Vec3d(0.5, 0.5, 0.0);
+  EXPECT_NEAR(static_cast<double>(lamp.intensity.x) / dot(way, way), 3.0, 1e-5);
   EXPECT_EQ(count_of(imported, Warn::kDefaultBackground), 1U);
   EXPECT_EQ(count_of(imported, Warn::kNoLight), 0U);
 }
@@ -111,6 +115,7 @@ TEST(Defaults, AnExplicitBlackBackgroundStays) {
   const auto imported =
       expect_scene({{"a.obj", kTriangle}, {"raykiln.json", R"({"background": [0, 0, 0]})"}});
   EXPECT_EQ(imported.scene.background, Rgb(0.0F));
+  EXPECT_TRUE(imported.scene.point_lights.empty());
   EXPECT_EQ(count_of(imported, Warn::kNoLight), 1U);
 }
 
