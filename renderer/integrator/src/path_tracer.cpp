@@ -32,6 +32,7 @@ void add(RenderStats& stats, const RenderStats& other) {
   stats.paths += other.paths;
   stats.non_finite += other.non_finite;
   stats.negative += other.negative;
+  stats.lights_at_hits += other.lights_at_hits;
   stats.truncated += other.truncated;
   stats.closest_calls += other.closest_calls;
   stats.short_calls_while_many_live += other.short_calls_while_many_live;

@@ -9,6 +9,8 @@ namespace raykiln::render {
 namespace {
 
 struct Vertex {
+  std::uint32_t id;  ///< of the triangle
+  bool transmits;    ///< light from behind comes through
   SurfacePoint point;
   Bsdf bsdf;
   VertexKey key;
@@ -34,6 +36,15 @@ bool survives_roulette(PathState& path, const VertexKey& key) {
   if (uniform(key, Dimension::kRoulette) >= p) return false;
   path.throughput /= p;
   return true;
+}
+
+/// Signed height of `light` over the plane of triangle `id`; 0 when it lies in it as far as doubles
+/// can tell, for then the sign is that of a rounding error. Differences of floats are exact in double
+/// or nearly so: a light one float step off an axis-parallel plane is never taken for one in it.
+double height_over(const TriangleMesh& mesh, std::uint32_t id, const Vec3d& ng, const Vec3d& light) {
+  const Vec3d way = light - Vec3d(mesh.positions[mesh.triangles[id][0]]);
+  const double height = dot(ng, way);
+  return std::abs(height) <= 0x1p-50 * dot(abs(ng), abs(way)) ? 0.0 : height;
 }
 
 /// Density over solid angle of a density over area, seen over `distance2` under `cosine`.
@@ -67,7 +78,11 @@ class VertexShader {
       if (sinks_.stopped) return;
       const Vec3d way = Vec3d(light.position) - vertex.point.p;
       const double distance2 = dot(way, way);
-      if (!(distance2 > 0.0)) continue;
+      if (!(distance2 > 0.0)) {
+        ++sinks_.stats.lights_at_hits;
+        continue;
+      }
+      if (!faces(vertex, Vec3d(light.position))) continue;
       const Vec3d wi = way / std::sqrt(distance2);
       const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
       const Rgbd arriving = Rgbd(light.intensity) / distance2;
@@ -119,6 +134,15 @@ class VertexShader {
   }
 
  private:
+  /// Can a light at this place light the surface? Decided in double: the floats in which values are
+  /// computed give a light within 1e-7 of the plane's direction the side of a rounding error.
+  bool faces(const Vertex& vertex, const Vec3d& light) const {
+    const double height = height_over(scene_.scene.mesh, vertex.id, vertex.point.ng, light);
+    if (height == 0.0) return false;
+    const bool viewed_from_front = dot(Vec3d(vertex.bsdf.ng), vertex.point.ng) > 0.0;
+    return vertex.transmits || (height > 0.0) == viewed_from_front;
+  }
+
   void queue(const Vertex& vertex, const Vec3d& wi, const Vec3f& target, const Rgbd& light) {
     if (light == Rgbd(0.0)) return;
     sinks_.shadows.push(ray_origin(vertex.point, wi), target, light, state_.slot);
@@ -153,7 +177,7 @@ void shade_vertex(const TransportScene& scene, const PathSettings& settings, con
   if (zero(material.diffuse) && zero(material.specular)) return;
 
   const Vertex vertex{
-      point, make_bsdf(material, Vec3f(point.ng), point.ns, -ray.d, settings.bsdf),
+      hit.id, material.transparent > 0.0F, point, make_bsdf(material, Vec3f(point.ng), point.ns, -ray.d, settings.bsdf),
       vertex_key(state.key, state.node, state.bounce)};
   shader.light_from_points(vertex);
   if (state.bounce >= static_cast<std::uint32_t>(settings.max_depth)) {
