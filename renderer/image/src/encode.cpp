@@ -10,6 +10,9 @@
 namespace raykiln::render {
 namespace {
 
+constexpr float kLargestHalf = 65504.0F;
+constexpr float kHalfVanishes = 0x1p-25F;  ///< half of the smallest denormal, and a tie goes to even
+
 /// IEC 61966-2-1: linear to sRGB, both in [0, 1].
 double srgb_from_linear(double x) {
   return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
@@ -48,6 +51,21 @@ bool consistent(const Image& image) {
                                  static_cast<std::size_t>(image.height);
 }
 
+/// Linear EXR; the library converts from float to the file's type, rounding to nearest.
+std::variant<Bytes, EncodeError> encode_linear(
+    const Image& image, OIIO::TypeDesc file_type,
+    const std::map<std::string, std::string>& attributes) {
+  if (!consistent(image)) return EncodeError{"the picture has no pixels"};
+  OIIO::ImageSpec spec = rgb_spec(image, file_type);
+  spec.attribute("oiio:ColorSpace", "Linear");
+  spec.attribute("compression", "zip");
+  // Unless the caller gives a time, a fixed one: the library would write now, and equal pictures
+  // would not be equal bytes.
+  spec.attribute("DateTime", "1970:01:01 00:00:00");
+  for (const auto& [key, value] : attributes) spec.attribute(key, value);
+  return encode("a.exr", spec, OIIO::TypeDesc::FLOAT, image.rgb.data());
+}
+
 }  // namespace
 
 std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops) {
@@ -63,15 +81,28 @@ std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_
 
 std::variant<Bytes, EncodeError> encode_exr(const Image& image,
                                             const std::map<std::string, std::string>& attributes) {
-  if (!consistent(image)) return EncodeError{"the picture has no pixels"};
-  OIIO::ImageSpec spec = rgb_spec(image, OIIO::TypeDesc::FLOAT);
-  spec.attribute("oiio:ColorSpace", "Linear");
-  spec.attribute("compression", "zip");
-  // Unless the caller gives a time, a fixed one: the library would write now, and equal pictures
-  // would not be equal bytes.
-  spec.attribute("DateTime", "1970:01:01 00:00:00");
-  for (const auto& [key, value] : attributes) spec.attribute(key, value);
-  return encode("a.exr", spec, OIIO::TypeDesc::FLOAT, image.rgb.data());
+  return encode_linear(image, OIIO::TypeDesc::FLOAT, attributes);
+}
+
+std::variant<HalfExr, EncodeError> encode_half_exr(
+    const Image& image, const std::map<std::string, std::string>& attributes) {
+  HalfExr result;
+  Image fitting = image;
+  for (float& value : fitting.rgb) {
+    result.vanished += value != 0.0F && std::abs(value) <= kHalfVanishes ? 1U : 0U;
+    if (!(std::abs(value) > kLargestHalf)) continue;  // NaN stays what it is
+    value = std::copysign(kLargestHalf, value);
+    ++result.clamped;
+  }
+  auto encoded = encode_linear(fitting, OIIO::TypeDesc::HALF, attributes);
+  if (const auto* error = std::get_if<EncodeError>(&encoded)) return *error;
+  result.bytes = std::move(std::get<Bytes>(encoded));
+  return result;
+}
+
+std::uint64_t nan_values(const Image& image) {
+  return static_cast<std::uint64_t>(std::count_if(image.rgb.begin(), image.rgb.end(),
+                                                  [](float value) { return std::isnan(value); }));
 }
 
 void set_image_library_threads(int threads) {

@@ -23,6 +23,19 @@ struct EncodeError {
 [[nodiscard]] std::variant<Bytes, EncodeError> encode_exr(
     const Image& image, const std::map<std::string, std::string>& attributes);
 
+/// The same in half floats, for half the bytes. They end at 65504: larger values, infinite ones too,
+/// are clamped to it and counted, so that no file holds an infinity that the picture does not.
+struct HalfExr {
+  Bytes bytes;
+  std::uint64_t clamped = 0;   ///< values beyond +-65504
+  std::uint64_t vanished = 0;  ///< values other than 0 that became 0: at most 2^-25
+};
+[[nodiscard]] std::variant<HalfExr, EncodeError> encode_half_exr(
+    const Image& image, const std::map<std::string, std::string>& attributes);
+
+/// Channel values that are NaN: what encode_png shows as black. A film resolves to none.
+[[nodiscard]] std::uint64_t nan_values(const Image& image);
+
 /// Number of threads that the image library may start by itself (1 in a server that has its own pool).
 void set_image_library_threads(int threads);
 
