@@ -55,7 +55,7 @@ bool within_four_sigma(const Measured& m, double truth, double bias) {
 
 std::string against(const Measured& m, double truth) {
   std::string line = text(m.mean) + " against " + text(truth);
-  if (m.standard_error > 0.0) {
+  if (m.standard_error > 1e-7 * std::abs(truth)) {
     line += ", " + text((m.mean - truth) / m.standard_error) + " sigma of " + text(m.standard_error);
   } else {
     line += ", relative error " + text(m.mean / truth - 1.0);
