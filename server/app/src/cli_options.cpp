@@ -70,6 +70,10 @@ void add_commands(CLI::App& app, CliOptions& options) {
   add_output(*render, options, true);
   render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
 
+  auto* lint = app.add_subcommand("lint", "report what is questionable about a scene");
+  lint->add_option("SCENE", options.scene, ".obj, .gltf, .glb, .zip or a folder")->required();
+  app.add_subcommand("selftest", "check this program against scenes with a known answer (under a minute)");
+
   auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
   add_picture_options(*submit, options);
   add_output(*submit, options, false);
@@ -128,6 +132,8 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
 
 ExitCode run_cli(const CliOptions& options) {
   if (options.command == "render") return render_command(options);
+  if (options.command == "lint") return lint_command(options);
+  if (options.command == "selftest") return selftest_command(options);
   if (options.command == "submit") return submit_command(options);
   if (options.command == "watch") return watch_command(options);
   if (options.command == "fetch") return fetch_command(options);

@@ -1,9 +1,9 @@
 #include <unistd.h>
 
-#include <cstdlib>
 #include <iostream>
 
 #include "output_file.hpp"
+#include "scratch.hpp"
 #include "raykiln/api/job_json.hpp"
 #include "raykiln/app/cli.hpp"
 #include "raykiln/app/local_render.hpp"
@@ -11,25 +11,6 @@
 
 namespace raykiln::server {
 namespace {
-
-/// A private folder that goes away with this object.
-class Scratch {
- public:
-  Scratch() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "raykiln-XXXXXX").string();
-    if (mkdtemp(pattern.data()) != nullptr) path_ = pattern;
-  }
-  ~Scratch() {
-    std::error_code ignored;  // nothing to be done about it at the end
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 ExitCode complain(const Error& error) {
   std::cerr << "raykiln: " << error.message;

@@ -44,6 +44,12 @@ struct ParsedCli {
 /// Renders without a daemon.
 [[nodiscard]] ExitCode render_command(const CliOptions& options);
 
+/// Runs the checks of renderer/selftest, a line each. kCheckFailed when one fails.
+[[nodiscard]] ExitCode selftest_command(const CliOptions& options);
+
+/// Reports what is questionable about a scene. kCheckFailed when a finding is an error.
+[[nodiscard]] ExitCode lint_command(const CliOptions& options);
+
 [[nodiscard]] ExitCode submit_command(const CliOptions& options);
 [[nodiscard]] ExitCode watch_command(const CliOptions& options);
 [[nodiscard]] ExitCode fetch_command(const CliOptions& options);

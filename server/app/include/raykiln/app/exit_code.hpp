@@ -16,6 +16,7 @@ enum class ExitCode : int {
   kRefused = 7,         ///< the server refused the request
   kNotFound = 8,        ///< no such job, scene or picture
   kBusy = 9,            ///< the server cannot take more now: try later
+  kCheckFailed = 10,    ///< selftest: a check failed; lint: the scene has errors
 };
 
 [[nodiscard]] inline int to_int(ExitCode code) { return static_cast<int>(code); }
@@ -31,7 +32,8 @@ enum class ExitCode : int {
          "  6  the server cannot be reached\n"
          "  7  the server refused the request\n"
          "  8  no such job, scene or picture\n"
-         "  9  the server is busy or stopping; try again later\n";
+         "  9  the server is busy or stopping; try again later\n"
+         "  10 selftest: a check failed; lint: the scene has errors\n";
 }
 
 }  // namespace raykiln::server
