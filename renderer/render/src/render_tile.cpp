@@ -1,27 +1,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "prepared_scene.hpp"
-#include "raykiln/integrator/path_tracer.hpp"
+#include "tracing.hpp"
 
 namespace raykiln::render {
 namespace {
 
 constexpr std::size_t kWindowPaths = 32768;  ///< paths traced between two visits to the planes
 constexpr std::size_t kMostLocated = 16;     ///< bad samples that a result names
-
-PathSettings path_settings(const RenderSettings& settings) {
-  PathSettings path;
-  path.seed = settings.seed;
-  path.max_depth = path_limit(settings);
-  path.branches = settings.branches;
-  path.pixel_mode = settings.pixel_mode;
-  path.emitter_sampling = settings.emitter_sampling;
-  path.bsdf.direction_sampling = settings.direction_sampling;
-  path.bsdf.light = settings.light_model;
-  path.traversal = settings.traversal;
-  return path;
-}
 
 /// A walk over all (block, sample, pixel) of a task, sample by sample, so that every pixel meets
 /// its samples in rising order.
@@ -94,10 +80,7 @@ TileResult render_tile(const PreparedScene& scene, const RenderSettings& setting
                        std::stop_token stop) {
   TileResult result = empty_result(rect, blocks);
   if (rect.width() <= 0 || rect.height() <= 0) return result;
-  const CameraRays camera(settings.own_camera
-                              ? *settings.own_camera
-                              : scene.scene().cameras[static_cast<std::size_t>(settings.camera)],
-                          settings.width, settings.height);
+  const CameraRays camera = camera_rays(scene, settings);
   PathTracer tracer({scene.scene(), scene.tree(), scene.emitters()}, camera,
                     path_settings(settings));
   std::vector<TaskOrder::Item> items;
