@@ -45,7 +45,8 @@ def to(api):
 def test_help_names_the_commands_and_exit_codes():
     shown = raykiln("--help")
     assert shown.returncode == 0
-    for word in ("render", "submit", "watch", "fetch", "cancel", "scenes", "jobs", "health"):
+    for word in ("render", "submit", "watch", "fetch", "cancel", "scenes", "jobs", "health",
+                 "selftest", "lint", "replay"):
         assert word in shown.stdout, word
     assert "exit" in shown.stdout.lower(), "the exit codes belong to the help"
 
@@ -207,3 +208,50 @@ def test_a_zip_made_by_others(api, to, tmp_path):
     assert zipfile.ZipFile(path).namelist()
     done = raykiln("submit", path, *to, "--samples", 1, "--size", "8x8", "--wait")
     assert done.returncode == 0, done.stderr
+
+
+def test_selftest_passes_on_this_binary():
+    done = raykiln("selftest", "--json", timeout=300)
+    report = json.loads(done.stdout)
+    failed = [row for row in report["rows"] if not row["passed"]]
+    assert done.returncode == 0 and report["failed"] == 0, failed
+    assert report["checks"] == len(report["rows"]) >= 20
+    assert {"T03", "T14", "V03", "X01", "X03"} <= {row["id"] for row in report["rows"]}
+
+
+def test_lint_of_a_sound_scene(folder):
+    done = raykiln("lint", folder / "box.obj", "--json")
+    report = json.loads(done.stdout)
+    assert done.returncode == 0 and report["errors"] == 0, report
+
+
+def test_lint_reports_open_glass_and_what_is_missing(tmp_path):
+    (tmp_path / "glass.mtl").write_text(
+        "newmtl glass\nKs 1 1 1\nTf 1 1 1\nd 0\nNi 1.5\nNs 1000\nillum 7\n")
+    (tmp_path / "pane.obj").write_text(
+        "mtllib glass.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl glass\nf 1 2 3\n")
+    done = raykiln("lint", tmp_path / "pane.obj", "--json")
+    report = json.loads(done.stdout)
+    assert done.returncode == 10
+    assert "open_glass" in [f["code"] for f in report["findings"] if f["level"] == "error"]
+    gone = raykiln("lint", tmp_path / "gone.obj", "--json")
+    assert gone.returncode == 10 and json.loads(gone.stdout)["findings"][0]["code"] == "file_missing"
+
+
+def test_lint_of_a_refused_scene_names_the_place(tmp_path):
+    (tmp_path / "bad.obj").write_text("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n")
+    done = raykiln("lint", tmp_path / "bad.obj")
+    assert done.returncode == 10 and "line 2" in done.stdout and "error" in done.stdout
+
+
+def test_replay_gives_the_same_sample_again(folder, tmp_path):
+    words = ("--size", "8x6", "--seed", 5)
+    out = tmp_path / "one.exr"
+    assert raykiln("render", folder / "box.obj", "-o", out, "--samples", 1, *words).returncode == 0
+    picture = read_exr(out.read_bytes())
+    done = raykiln("replay", folder / "box.obj", 3, 4, 0, "--json", *words)
+    assert done.returncode == 0, done.stderr
+    sample = json.loads(done.stdout)
+    assert not sample["dropped"]
+    assert np.allclose(picture.pixels[4, 3], sample["radiance"], rtol=1e-6)
+    assert raykiln("replay", folder / "box.obj", 8, 0, 0, *words).returncode == 2

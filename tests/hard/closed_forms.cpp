@@ -11,6 +11,7 @@
 #include "raykiln/selftest/direct_light.hpp"
 #include "raykiln/selftest/form_factors.hpp"
 #include "raykiln/selftest/refraction.hpp"
+#include "raykiln/selftest/selftest.hpp"
 
 namespace raykiln::hard {
 namespace {
@@ -187,6 +188,14 @@ TEST(T20, ShadowOfASquare) {
                                    .occluder = light * members.between(0.1, 0.6),
                                    .half = size * members.between(0.2, 1.0),
                                    .pixels = 64}));
+  }
+}
+
+// What an installed binary checks by itself.
+TEST(Selftest, AllChecksPass) {
+  for (const Check& check : all_checks()) {
+    const Outcome outcome = check.run();
+    EXPECT_TRUE(outcome.passed) << check.id << ' ' << check.input << ": " << outcome.measured;
   }
 }
 

@@ -74,6 +74,12 @@ void add_commands(CLI::App& app, CliOptions& options) {
   lint->add_option("SCENE", options.scene, ".obj, .gltf, .glb, .zip or a folder")->required();
   app.add_subcommand("selftest", "check this program against scenes with a known answer (under a minute)");
 
+  auto* replay = app.add_subcommand("replay", "render one sample of a picture again and print it");
+  add_picture_options(*replay, options);
+  replay->add_option("X", options.replay.x, "pixel column, from the left")->required()->check(CLI::NonNegativeNumber);
+  replay->add_option("Y", options.replay.y, "pixel row, from the top")->required()->check(CLI::NonNegativeNumber);
+  replay->add_option("SAMPLE", options.replay.sample, "index of the sample, from 0")->required();
+
   auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
   add_picture_options(*submit, options);
   add_output(*submit, options, false);
@@ -133,6 +139,7 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
 ExitCode run_cli(const CliOptions& options) {
   if (options.command == "render") return render_command(options);
   if (options.command == "lint") return lint_command(options);
+  if (options.command == "replay") return replay_command(options);
   if (options.command == "selftest") return selftest_command(options);
   if (options.command == "submit") return submit_command(options);
   if (options.command == "watch") return watch_command(options);

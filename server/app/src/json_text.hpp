@@ -9,7 +9,7 @@ namespace raykiln::server {
 
 /// `text` (valid UTF-8) as a JSON string, with quotes.
 inline std::string json_string(std::string_view text) {
-  std::string result = "\"";
+  std::string result(1, '"');
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
     if (static_cast<unsigned char>(c) < 0x20) {
@@ -20,7 +20,8 @@ inline std::string json_string(std::string_view text) {
       result += c;
     }
   }
-  return result + '"';
+  result += '"';
+  return result;
 }
 
 }  // namespace raykiln::server

@@ -46,7 +46,8 @@ ExitCode selftest_command(const CliOptions& options) {
     const Outcome outcome = check.run();
     failed += outcome.passed ? 0 : 1;
     if (options.json) {
-      rows += (rows.empty() ? "" : ",") + json_row(check, outcome, since(start));
+      if (!rows.empty()) rows += ',';
+      rows += json_row(check, outcome, since(start));
     } else {
       print_row(check, outcome, since(start));
     }

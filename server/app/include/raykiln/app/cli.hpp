@@ -1,6 +1,7 @@
 // The command line program: its options, and one function per command.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,6 +19,12 @@ struct PictureOptions {
   double exposure_stops = 0.0;
 };
 
+/// Which sample `replay` renders again.
+struct ReplayPlace {
+  int x = 0, y = 0;  ///< pixel, from the top left corner
+  std::uint64_t sample = 0;
+};
+
 struct CliOptions {
   std::string command;
   std::string server = "http://127.0.0.1:8080";
@@ -26,6 +33,7 @@ struct CliOptions {
   std::filesystem::path scene;
   std::vector<std::filesystem::path> outputs;
   PictureOptions picture;
+  ReplayPlace replay;
   int threads = 0;
   bool wait = false;
   std::string job;
@@ -49,6 +57,9 @@ struct ParsedCli {
 
 /// Reports what is questionable about a scene. kCheckFailed when a finding is an error.
 [[nodiscard]] ExitCode lint_command(const CliOptions& options);
+
+/// Renders one sample of one pixel again and prints its radiance, finite or not.
+[[nodiscard]] ExitCode replay_command(const CliOptions& options);
 
 [[nodiscard]] ExitCode submit_command(const CliOptions& options);
 [[nodiscard]] ExitCode watch_command(const CliOptions& options);
