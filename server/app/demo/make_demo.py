@@ -148,9 +148,9 @@ SIDECAR = {
     "scene": "demo.obj",
     "cameras": [
         {"name": "front", "eye": [0, 1, 4.1], "look_at": [0, 1, 0], "up": [0, 1, 0],
-         "fov_deg": 38},
+         "fov_deg": 35.6},
     ],
-    "background": [0, 0, 0],
+    "background": [0.12, 0.14, 0.18],
     "materials": {
         "glass": {"diffuse": [0, 0, 0], "specular": [1, 1, 1], "transparent": 1,
                   "specular_exp": 1e5, "index_of_refraction": 1.5},
