@@ -32,6 +32,8 @@ ARROWS = {
     "renderer/shading": ["renderer/sampling", "renderer/scene"],
     "renderer/integrator": ["renderer/accel", "renderer/shading"],
     "renderer/render": ["renderer/integrator", "renderer/image", "renderer/io"],
+    "renderer/lint": ["renderer/io", "renderer/scene"],
+    "renderer/selftest": ["renderer/render"],
     "server/base": [],
     "server/jobs": ["server/base"],
     "server/store": ["server/base", "server/jobs"],
@@ -41,7 +43,8 @@ ARROWS = {
                          "renderer/image"],
     "server/api": ["server/scheduler", "server/store", "server/events"],
     "server/http": ["server/api"],
-    "server/app": ["server/http", "server/api", "renderer/render"],
+    "server/app": ["server/http", "server/api", "renderer/render", "renderer/lint",
+                   "renderer/selftest"],
 }
 # A package's headers, and the folders that may include them.
 PACKAGES = {
