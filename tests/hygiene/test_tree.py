@@ -38,7 +38,7 @@ ARROWS = {
     "server/jobs": ["server/base"],
     "server/store": ["server/base", "server/jobs"],
     "server/events": ["server/base", "server/jobs"],
-    "server/workers": ["server/base", "server/jobs", "renderer/render"],
+    "server/workers": ["server/base", "server/jobs", "server/store", "renderer/render"],
     "server/scheduler": ["server/jobs", "server/store", "server/events", "server/workers",
                          "renderer/image"],
     "server/api": ["server/scheduler", "server/store", "server/events"],

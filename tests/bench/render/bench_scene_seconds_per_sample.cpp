@@ -99,6 +99,11 @@ bool measure(const char* name, std::shared_ptr<const Scene> source, const Render
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::atoll(argv[1]) <= 0) {
+    std::puts("usage: bench_scene_seconds_per_sample [SAMPLES] [SIDE_PX] [MAX_DEPTH] [physical|seed] [SCENE_FOLDER]\n"
+              "Seconds for a sample of a pixel, one thread, and where they go; JSON. Defaults: 16 128 8 physical.");
+    return std::string_view(argv[1]) == "--help" ? 0 : 2;
+  }
   const auto samples = static_cast<std::uint64_t>(argc > 1 ? std::atoll(argv[1]) : 16);
   RenderSettings settings;
   settings.width = settings.height = argc > 2 ? std::atoi(argv[2]) : 128;
