@@ -30,9 +30,17 @@ def test_life_of_a_job(api, samples):
 
 def test_the_request_comes_back_with_its_defaults(api, samples):
     request = api.submit(samples["box"]).json()["request"]
-    assert request["light_model"] == "seed" and request["max_depth"] == 8
+    assert request["light_model"] == "physical" and request["max_depth"] == 128
+    assert request["light_model_overrides"] == {}
     assert (request["tile"], request["priority"], request["seed"]) == (64, 10, 0)
     assert (request["branches"], request["emitter_sampling"]) == (1, True)
+
+
+def test_the_light_model_is_chosen_as_a_whole_and_switch_by_switch(api, samples):
+    job = api.submit(samples["box"], light_model="seed", light_model_overrides={"radiance_scaling": True})
+    request = job.json()["request"]
+    assert request["light_model"] == "seed" and request["max_depth"] == 8
+    assert request["light_model_overrides"] == {"radiance_scaling": True}
 
 
 def test_list_filters_by_state_and_scene(launch):
@@ -164,8 +172,11 @@ WRONG_FIELDS = [
     ({"width": -1}, "/width", "out_of_range"),
     ({"stop": {"samples": 0}}, "/stop/samples", "out_of_range"),
     ({"stop": 4}, "/stop", "wrong_type"),
-    ({"max_depth": 65}, "/max_depth", "out_of_range"),
-    ({"light_model": "physical"}, "/light_model", None),
+    ({"max_depth": 1025}, "/max_depth", "out_of_range"),
+    ({"light_model": "nature"}, "/light_model", None),
+    ({"light_model_overrides": {"phong": "half"}}, "/light_model_overrides/phong", "invalid_value"),
+    ({"light_model_overrides": {"colour": True}}, "/light_model_overrides/colour", "unknown_field"),
+    ({"light_model_overrides": {"roulette": 1}}, "/light_model_overrides/roulette", "wrong_type"),
     ({"tile": 0}, "/tile", "out_of_range"),
     ({"priority": 0}, "/priority", "out_of_range"),
     ({"seed": -1}, "/seed", "out_of_range"),

@@ -22,6 +22,7 @@ export interface JobRequest {
   height: number;
   stop: { samples: number };
   light_model?: string;
+  light_model_overrides?: Record<string, string | boolean>;
   max_depth?: number;
   branches?: number;
   seed?: number;

@@ -8,7 +8,7 @@ export type FormKey =
   | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
   | "width" | "height" | "samples" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
-  | "pixel_mode" | "direction_sampling" | "emitter_sampling";
+  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling";
 
 export type FormValues = Record<FormKey, string>;
 export type FormErrors = Partial<Record<FormKey, string>>;
@@ -18,9 +18,9 @@ export const kOwnCamera = "own";
 
 export const kDefaultForm: FormValues = {
   scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40",
-  width: "640", height: "480", samples: "64", max_depth: "8",
+  width: "640", height: "480", samples: "64", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
-  pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true",
+  light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true",
 };
 
 type Kind = "scene" | "camera" | "integer" | "number" | "vector" | "text" | "choice";
@@ -35,6 +35,8 @@ export interface FieldSpec {
   group: "main" | "camera" | "more";
   min?: number;
   max?: number;
+  /** May be left empty: the server then chooses. */
+  optional?: boolean;
   choices?: readonly (readonly [value: string, label: string])[];
 }
 
@@ -48,7 +50,9 @@ export const kFields: readonly FieldSpec[] = [
   { key: "width", pointer: "/width", label: "Width", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
   { key: "height", pointer: "/height", label: "Height", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
   { key: "samples", pointer: "/stop/samples", label: "Samples", hint: "per pixel", kind: "integer", group: "main", min: 1, max: 1048576 },
-  { key: "max_depth", pointer: "/max_depth", label: "Max depth", hint: "reflections", kind: "integer", group: "main", min: 0, max: 64 },
+  { key: "max_depth", pointer: "/max_depth", label: "Max depth", hint: "reflections; empty: by the light model", kind: "integer", group: "main", min: 0, max: 1024, optional: true },
+  { key: "light_model", pointer: "/light_model", label: "Light model", hint: "", kind: "choice", group: "main",
+    choices: [["physical", "Physical"], ["seed", "Seed (as first written)"]] },
   { key: "name", pointer: "/name", label: "Name", hint: "for the list; optional", kind: "text", group: "more" },
   { key: "seed", pointer: "/seed", label: "Seed", hint: "of the noise", kind: "integer", group: "more", min: 0 },
   { key: "priority", pointer: "/priority", label: "Priority", hint: "1 to 100", kind: "integer", group: "more", min: 1, max: 100 },
@@ -71,6 +75,7 @@ function parse_vector(text: string): Vec3 | null {
 
 /** The reason why `text` cannot be sent as this field's value; empty when it can. */
 function fault(spec: FieldSpec, text: string): string {
+  if (spec.optional && text.trim() === "") return "";
   if (spec.kind === "vector") {
     return parse_vector(text) ? "" : "Enter three numbers, for example 0 1 4.";
   }
@@ -108,8 +113,8 @@ export function to_request(values: FormValues): JobRequest {
     width: number("width"),
     height: number("height"),
     stop: { samples: number("samples") },
-    light_model: "seed",
-    max_depth: number("max_depth"),
+    light_model: values.light_model,
+    ...(values.max_depth.trim() === "" ? {} : { max_depth: number("max_depth") }),
     branches: number("branches"),
     seed: number("seed"),
     pixel_mode: values.pixel_mode,
@@ -134,7 +139,7 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   const values = { ...kDefaultForm, scene: request.scene, name: request.name ?? job.name };
   const plain: FormKey[] = [
     "width", "height", "max_depth", "branches", "seed", "tile", "priority",
-    "pixel_mode", "direction_sampling", "emitter_sampling",
+    "light_model", "pixel_mode", "direction_sampling", "emitter_sampling",
   ];
   const bag = request as unknown as Record<string, unknown>;
   for (const key of plain) if (bag[key] !== undefined) values[key] = String(bag[key]);

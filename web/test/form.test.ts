@@ -11,7 +11,7 @@ describe("check_form", () => {
   });
 
   test.each([
-    ["width", "0"], ["width", "16385"], ["width", "12.5"], ["width", ""], ["samples", "1e3"], ["max_depth", "65"], ["seed", "-1"],
+    ["width", "0"], ["width", "16385"], ["width", "12.5"], ["width", ""], ["samples", "1e3"], ["max_depth", "1025"], ["seed", "-1"],
     ["seed", "9007199254740993"], ["priority", "0"], ["priority", "101"], ["branches", "x"],
   ] as const)("%s refuses %j", (key, value) => expect(Object.keys(check_form(filled({ [key]: value })))).toEqual([key]));
 

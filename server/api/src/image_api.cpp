@@ -53,10 +53,10 @@ std::map<std::string, std::string> exr_attributes(const JobImage& image, const s
   return {{"raykiln:scene", image.scene},
           {"raykiln:job", image.job},
           {"raykiln:revision", std::to_string(image.revision)},
-          {"raykiln:light_model", std::string(name(image.request.light_model))},
+          {"raykiln:light_model", light_model_label(image.request.light_model, image.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(image.request.seed)},
           {"raykiln:samples", shortest(image.samples_per_pixel)},
-          {"raykiln:max_depth", std::to_string(image.request.max_depth)},
+          {"raykiln:max_depth", std::to_string(depth_limit(image.request))},
           {"raykiln:seconds", shortest(image.render_seconds)},
           {"raykiln:version", version}};
 }

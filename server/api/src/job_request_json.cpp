@@ -79,6 +79,43 @@ void read_stop(FieldReader& reader, const JobLimits& limits, Errors& errors, Job
   stop.finish();
 }
 
+/// A switch of the light model that names one of two values.
+template <class Value>
+void read_switch(FieldReader& reader, const char* name, const char* choices,
+                 std::optional<Value> (*parse)(std::string_view), std::optional<Value>& target) {
+  const auto text = reader.text(name, {0, 100});
+  if (!text) return;
+  target = parse(*text);
+  if (!target) reader.error(name, "invalid_value", std::string("must be one of ") + choices);
+}
+
+void read_overrides(FieldReader& reader, Errors& errors, JobRequest& request) {
+  const json* value = reader.any("light_model_overrides");
+  if (value == nullptr) return;
+  if (!value->is_object()) {
+    return reader.error("light_model_overrides", "wrong_type",
+                        "must be an object such as {\"fresnel\": \"schlick\"}");
+  }
+  LightModelOverrides& o = request.light_model_overrides;
+  FieldReader fields(*value, reader.pointer_to("light_model_overrides"), errors);
+  read_switch(fields, "phong", "max, over_cos_o", phong_divisor_named, o.phong);
+  read_switch(fields, "fresnel", "exact, schlick", fresnel_formula_named, o.fresnel);
+  o.radiance_scaling = fields.boolean("radiance_scaling");
+  read_switch(fields, "diffuse_sampling", "cosine, uniform", diffuse_sampling_named, o.diffuse_sampling);
+  o.roulette = fields.boolean("roulette");
+  fields.finish();
+}
+
+nlohmann::ordered_json overrides_value(const LightModelOverrides& o) {
+  nlohmann::ordered_json value = nlohmann::ordered_json::object();
+  if (o.phong) value["phong"] = name(*o.phong);
+  if (o.fresnel) value["fresnel"] = name(*o.fresnel);
+  if (o.radiance_scaling) value["radiance_scaling"] = *o.radiance_scaling;
+  if (o.diffuse_sampling) value["diffuse_sampling"] = name(*o.diffuse_sampling);
+  if (o.roulette) value["roulette"] = *o.roulette;
+  return value;
+}
+
 JobRequest read_request(const json& object, const JobLimits& limits, Errors& errors) {
   JobRequest request;
   FieldReader reader(object, "", errors);
@@ -94,8 +131,11 @@ JobRequest read_request(const json& object, const JobLimits& limits, Errors& err
   read_integer(reader, "width", side, Need::kRequired, request.width);
   read_integer(reader, "height", side, Need::kRequired, request.height);
   read_stop(reader, limits, errors, request);
-  read_named(reader, "light_model", "seed", light_model_named, request.light_model);
-  read_integer(reader, "max_depth", {0, as_bound(limits.max_depth)}, Need::kOptional, request.max_depth);
+  read_named(reader, "light_model", "physical, seed", light_model_named, request.light_model);
+  read_overrides(reader, errors, request);
+  if (const auto depth = reader.natural("max_depth", {0, as_bound(limits.max_depth)})) {
+    request.max_depth = static_cast<int>(*depth);
+  }
   read_integer(reader, "branches", {1, as_bound(limits.max_branches)}, Need::kOptional, request.branches);
   if (const auto seed = reader.natural("seed", {0, 9007199254740991U})) request.seed = *seed;
   read_named(reader, "pixel_mode", "random, centre", pixel_mode_named, request.pixel_mode);
@@ -141,7 +181,8 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"height", request.height},
           {"stop", {{"samples", request.stop.samples}}},
           {"light_model", name(request.light_model)},
-          {"max_depth", request.max_depth},
+          {"light_model_overrides", overrides_value(request.light_model_overrides)},
+          {"max_depth", depth_limit(request)},
           {"branches", request.branches},
           {"seed", request.seed},
           {"pixel_mode", name(request.pixel_mode)},

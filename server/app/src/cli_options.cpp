@@ -26,6 +26,29 @@ CameraChoice camera_choice(const std::string& text) {
   return text;
 }
 
+void add_light_model(CLI::App& command, JobRequest& request) {
+  command.add_option_function<std::string>(
+      "--light-model",
+      [&request](const std::string& text) {
+        const auto model = light_model_named(text);
+        if (!model) throw CLI::ValidationError("--light-model is physical or seed");
+        request.light_model = *model;
+      },
+      "physical or seed (physical)");
+  command.add_option_function<std::string>(
+      "--light-model-overrides",
+      [&request](const std::string& text) {
+        const auto overrides = overrides_of(text);
+        if (!overrides) {
+          throw CLI::ValidationError(
+              "--light-model-overrides: phong=max|over_cos_o, fresnel=exact|schlick, "
+              "radiance_scaling=true|false, diffuse_sampling=cosine|uniform, roulette=true|false");
+        }
+        request.light_model_overrides = *overrides;
+      },
+      "switches against the model, such as fresnel=schlick,roulette=false");
+}
+
 void add_picture_options(CLI::App& command, CliOptions& options) {
   const JobLimits limits;
   JobRequest& request = options.picture.request;
@@ -33,9 +56,10 @@ void add_picture_options(CLI::App& command, CliOptions& options) {
   command.add_option("--samples", request.stop.samples, "samples per pixel")
       ->check(CLI::Range(std::uint64_t{1}, limits.max_samples))
       ->capture_default_str();
-  command.add_option("--depth", request.max_depth, "reflections after the first hit")
-      ->check(CLI::Range(0, limits.max_depth))
-      ->capture_default_str();
+  command.add_option("--depth", request.max_depth,
+                     "most reflections after the first hit (128 with roulette, else 8)")
+      ->check(CLI::Range(0, limits.max_depth));
+  add_light_model(command, request);
   command.add_option_function<std::string>(
       "--size",
       [&request](const std::string& text) {

@@ -214,6 +214,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   picture.job.statistics.tree_build_seconds = build_seconds;
   picture.job.elapsed_seconds = since();
   picture.job.warnings = warnings_of(loaded->report);
+  warn_of_light_model(*settings, *loaded->scene, picture.job.warnings);
   return picture;
 }
 

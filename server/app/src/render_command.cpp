@@ -24,10 +24,10 @@ ExitCode complain(const Error& error) {
 std::map<std::string, std::string> attributes(const LocalPicture& picture, const std::string& scene) {
   const JobSnapshot& job = picture.job;
   return {{"raykiln:scene", scene},
-          {"raykiln:light_model", std::string(name(job.request.light_model))},
+          {"raykiln:light_model", light_model_label(job.request.light_model, job.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(job.request.seed)},
           {"raykiln:samples", std::to_string(job.request.stop.samples)},
-          {"raykiln:max_depth", std::to_string(job.request.max_depth)},
+          {"raykiln:max_depth", std::to_string(depth_limit(job.request))},
           {"raykiln:seconds", std::to_string(job.elapsed_seconds)},
           {"raykiln:version", RAYKILN_VERSION}};
 }

@@ -164,7 +164,8 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   r.integer("height", q.height);
   r.natural("stop.samples", q.stop.samples);
   r.text("light_model", name(q.light_model));
-  r.integer("max_depth", q.max_depth);
+  r.text("light_model_overrides", overrides_text(q.light_model_overrides));
+  r.integer("max_depth", depth_limit(q));
   r.natural("seed", q.seed);
   r.integer("tile", q.tile);
   r.integer("priority", q.priority);
@@ -183,7 +184,8 @@ JobRequest read_request(const RecordReader& r) {
   q.height = static_cast<int>(r.integer("height", q.height));
   q.stop.samples = r.natural("stop.samples", q.stop.samples);
   q.light_model = light_model_named(r.text("light_model")).value_or(q.light_model);
-  q.max_depth = static_cast<int>(r.integer("max_depth", q.max_depth));
+  q.light_model_overrides = overrides_of(r.text("light_model_overrides")).value_or(LightModelOverrides{});
+  q.max_depth = static_cast<int>(r.integer("max_depth", depth_limit(q)));
   q.seed = r.natural("seed", q.seed);
   q.tile = static_cast<int>(r.integer("tile", q.tile));
   q.priority = static_cast<int>(r.integer("priority", q.priority));

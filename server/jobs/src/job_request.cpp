@@ -72,7 +72,7 @@ std::optional<Error> tiles_error(const JobRequest& r, const JobLimits& limits) {
 
 std::optional<Error> branches_error(const JobRequest& r, const JobLimits& limits) {
   if (r.branches == 1) return std::nullopt;
-  const double paths = std::pow(r.branches, r.max_depth);
+  const double paths = std::pow(r.branches, depth_limit(r));
   if (paths <= static_cast<double>(limits.max_branch_paths)) return std::nullopt;
   return wrong("/branches", "branches to the power of max_depth must be at most " +
                                 std::to_string(limits.max_branch_paths));
@@ -98,7 +98,7 @@ std::optional<Error> range_error(const JobRequest& r, const JobLimits& limits) {
   if (auto e = outside("/width", r.width, 1, limits.max_side)) return e;
   if (auto e = outside("/height", r.height, 1, limits.max_side)) return e;
   if (auto e = outside<uint64_t>("/stop/samples", r.stop.samples, 1, limits.max_samples)) return e;
-  if (auto e = outside("/max_depth", r.max_depth, 0, limits.max_depth)) return e;
+  if (auto e = outside("/max_depth", depth_limit(r), 0, limits.max_depth)) return e;
   if (auto e = outside("/branches", r.branches, 1, limits.max_branches)) return e;
   if (auto e = outside("/tile", r.tile, 1, limits.max_tile)) return e;
   return outside("/priority", r.priority, 1, limits.max_priority);
@@ -112,7 +112,6 @@ std::string_view name(PixelMode value) {
 std::string_view name(DirectionSampling value) {
   return value == DirectionSampling::kBsdf ? "bsdf" : "uniform_sphere";
 }
-std::string_view name(LightModel) { return "seed"; }
 
 std::optional<PixelMode> pixel_mode_named(std::string_view text) {
   if (text == "random") return PixelMode::kRandom;
@@ -124,9 +123,13 @@ std::optional<DirectionSampling> direction_sampling_named(std::string_view text)
   if (text == "uniform_sphere") return DirectionSampling::kUniformSphere;
   return std::nullopt;
 }
-std::optional<LightModel> light_model_named(std::string_view text) {
-  if (text == "seed") return LightModel::kSeed;
-  return std::nullopt;
+
+int depth_limit(const JobRequest& request) {
+  constexpr int kRouletteLimit = 128, kFixedDepth = 8;
+  if (request.max_depth) return *request.max_depth;
+  const bool roulette = request.light_model_overrides.roulette.value_or(
+      request.light_model == LightModel::kPhysical);
+  return roulette && request.branches == 1 ? kRouletteLimit : kFixedDepth;
 }
 
 Status validate(const JobRequest& request, const JobLimits& limits) {

@@ -51,7 +51,38 @@ Result<int> camera_index(const CameraChoice& choice, const std::vector<std::stri
   return 0;  // a camera of the user's own: the index is not used
 }
 
+render::LightModel light_model_of(const JobRequest& request) {
+  render::LightModel m = request.light_model == LightModel::kSeed ? render::kSeedModel
+                                                                  : render::kPhysicalModel;
+  const LightModelOverrides& o = request.light_model_overrides;
+  if (o.phong) {
+    m.phong = *o.phong == PhongDivisor::kMax ? render::PhongCosine::kMax
+                                             : render::PhongCosine::kOverCosO;
+  }
+  if (o.fresnel) {
+    m.fresnel = *o.fresnel == FresnelFormula::kExact ? render::FresnelFormula::kExact
+                                                     : render::FresnelFormula::kSchlick;
+  }
+  m.radiance_scaling = o.radiance_scaling.value_or(m.radiance_scaling);
+  if (o.diffuse_sampling) {
+    m.diffuse_sampling = *o.diffuse_sampling == DiffuseSampling::kCosine
+                             ? render::DiffuseSampling::kCosine
+                             : render::DiffuseSampling::kUniform;
+  }
+  m.roulette = o.roulette.value_or(m.roulette);
+  return m;
+}
+
 }  // namespace
+
+void warn_of_light_model(const render::RenderSettings& settings, const render::Scene& scene,
+                         std::vector<JobWarning>& warnings) {
+  for (const auto& found : render::light_model_warnings(settings.light_model, scene)) {
+    const bool known = std::any_of(warnings.begin(), warnings.end(),
+                                   [&](const JobWarning& w) { return w.code == found.code; });
+    if (!known) warnings.push_back({found.code, found.message, "/light_model"});
+  }
+}
 
 Status check_camera(const CameraChoice& choice, const SceneReport& report) {
   if (auto index = camera_index(choice, report.cameras); !index) return index.error();
@@ -69,8 +100,8 @@ Result<render::RenderSettings> render_settings(const JobRequest& request,
   if (const auto* own = std::get_if<OwnCamera>(&request.camera)) {
     settings.own_camera = camera_of(*own, scene);
   }
-  settings.light_model = render::kSeedModel;
-  settings.max_depth = request.max_depth;
+  settings.light_model = light_model_of(request);
+  settings.max_depth = depth_limit(request);
   settings.branches = request.branches;
   settings.seed = request.seed;
   settings.pixel_mode = request.pixel_mode == PixelMode::kRandom ? render::PixelMode::kRandom

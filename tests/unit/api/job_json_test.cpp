@@ -32,7 +32,9 @@ TEST(JobRequestJson, FillsDefaults) {
   ASSERT_NE(request, nullptr);
   EXPECT_EQ(request->width, 64);
   EXPECT_EQ(request->stop.samples, 4U);
-  EXPECT_EQ(request->max_depth, 8);
+  EXPECT_EQ(request->max_depth, std::nullopt);
+  EXPECT_EQ(depth_limit(*request), 128);
+  EXPECT_EQ(request->light_model, LightModel::kPhysical);
   EXPECT_EQ(request->tile, 64);
   EXPECT_EQ(request->priority, 10);
   EXPECT_EQ(std::get<int>(request->camera), 0);
@@ -53,6 +55,8 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.pixel_mode = PixelMode::kCentre;
   request.direction_sampling = DirectionSampling::kUniformSphere;
   request.emitter_sampling = false;
+  request.light_model = LightModel::kSeed;
+  request.light_model_overrides = {PhongDivisor::kMax, FresnelFormula::kSchlick, false, std::nullopt, true};
   for (const CameraChoice& camera : {CameraChoice{7}, CameraChoice{std::string("front")}, request.camera}) {
     request.camera = camera;
     const auto text = job_request_json(request);
@@ -80,7 +84,11 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/stop/time", 4, "/stop/time unknown_field");
   check("/stop/samples", 0, "/stop/samples out_of_range");
   check("/a~1b", 4, "/a~1b unknown_field");
-  check("/light_model", "physical", "/light_model invalid_value");
+  check("/light_model", "nature", "/light_model invalid_value");
+  check("/light_model_overrides", true, "/light_model_overrides wrong_type");
+  check("/light_model_overrides", {{"phong", "half"}}, "/light_model_overrides/phong invalid_value");
+  check("/light_model_overrides", {{"roulette", 1}}, "/light_model_overrides/roulette wrong_type");
+  check("/light_model_overrides", {{"x", 1}}, "/light_model_overrides/x unknown_field");
   check("/name", std::string(201, 'a'), "/name out_of_range");
   check("/name", "a\nb", "/name invalid_value");
   check("/seed", 9007199254740992U, "/seed out_of_range");

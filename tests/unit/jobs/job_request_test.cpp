@@ -23,7 +23,7 @@ TEST(JobRequest, IsCheckedAgainstEveryLimit) {
       {"/width", [](JobRequest& r) { r.width = 0; }},
       {"/height", [](JobRequest& r) { r.height = 1'000'000; }},
       {"/stop/samples", [](JobRequest& r) { r.stop.samples = 0; }},
-      {"/max_depth", [](JobRequest& r) { r.max_depth = 65; }},
+      {"/max_depth", [](JobRequest& r) { r.max_depth = 1025; }},
       {"/branches", [](JobRequest& r) { r.branches = 16; }},
       {"/tile", [](JobRequest& r) { r.tile = 0; }},
       {"/tile", [](JobRequest& r) { r.tile = 1, r.width = 16'384, r.height = 16'384; }},
@@ -90,6 +90,34 @@ TEST(Admission, SaysWhenToComeBack) {
   EXPECT_EQ(full.error().retry_after_s, 20);
   EXPECT_EQ(admit(10, 10, 0.0, 0).error().retry_after_s, 1);
   EXPECT_EQ(admit(10, 10, 1e9, 1).error().retry_after_s, 600);
+}
+
+TEST(LightModelOverrides, TextComesBackAsItWent) {
+  for (const char* text : {"", "phong=max", "phong=over_cos_o,fresnel=schlick,radiance_scaling=false,diffuse_sampling=uniform,roulette=false",
+                           "fresnel=exact,roulette=true"}) {
+    const auto overrides = overrides_of(text);
+    ASSERT_TRUE(overrides.has_value()) << text;
+    EXPECT_EQ(overrides_text(*overrides), text);
+  }
+  for (const char* text : {"phong", "phong=", "phong=half", "colour=max", "roulette=1", ",", "phong=max,,"}) {
+    EXPECT_FALSE(overrides_of(text).has_value()) << text;
+  }
+  EXPECT_EQ(light_model_label(LightModel::kPhysical, {}), "physical");
+  EXPECT_EQ(light_model_label(LightModel::kSeed, *overrides_of("roulette=true")), "seed with roulette=true");
+}
+
+TEST(LightModelOverrides, DecideTheDepthThatIsNotGiven) {
+  JobRequest request;
+  EXPECT_EQ(depth_limit(request), 128);
+  request.light_model_overrides.roulette = false;
+  EXPECT_EQ(depth_limit(request), 8);
+  request.light_model = LightModel::kSeed;
+  request.light_model_overrides.roulette = true;
+  EXPECT_EQ(depth_limit(request), 128);
+  request.branches = 2;
+  EXPECT_EQ(depth_limit(request), 8);
+  request.max_depth = 0;
+  EXPECT_EQ(depth_limit(request), 0);
 }
 
 }  // namespace

@@ -10,12 +10,12 @@
 
 #include "raykiln/base/config.hpp"
 #include "raykiln/base/result.hpp"
+#include "raykiln/jobs/light_model.hpp"
 
 namespace raykiln::server {
 
 enum class PixelMode { kRandom, kCentre };
 enum class DirectionSampling { kBsdf, kUniformSphere };
-enum class LightModel { kSeed };
 
 struct StopRule {
   std::uint64_t samples = 64;  ///< a pixel
@@ -38,8 +38,9 @@ struct JobRequest {
   CameraChoice camera = 0;
   int width = 640, height = 480;
   StopRule stop;
-  LightModel light_model = LightModel::kSeed;
-  int max_depth = 8;            ///< reflections after the first hit
+  LightModel light_model = LightModel::kPhysical;
+  LightModelOverrides light_model_overrides;
+  std::optional<int> max_depth;  ///< reflections after the first hit; unset: see depth_limit()
   std::uint64_t seed = 0;
   int tile = 64;                ///< pixels a side
   int priority = 10;            ///< 1 .. 100: share of the workers relative to other jobs
@@ -51,10 +52,12 @@ struct JobRequest {
 
 [[nodiscard]] std::string_view name(PixelMode value);
 [[nodiscard]] std::string_view name(DirectionSampling value);
-[[nodiscard]] std::string_view name(LightModel value);
 [[nodiscard]] std::optional<PixelMode> pixel_mode_named(std::string_view name);
 [[nodiscard]] std::optional<DirectionSampling> direction_sampling_named(std::string_view name);
-[[nodiscard]] std::optional<LightModel> light_model_named(std::string_view name);
+
+/// Reflections after the first hit at which paths end: as asked for, else 128 where roulette ends
+/// them before (one ray a hit), else 8.
+[[nodiscard]] int depth_limit(const JobRequest& request);
 
 /// The first thing that is wrong (code "invalid_request", `where` a JSON pointer such as
 /// "/stop/samples"), or success. Whether scene and camera exist is the scheduler's to say.

@@ -3,6 +3,7 @@
 
 #include "raykiln/base/result.hpp"
 #include "raykiln/jobs/job_request.hpp"
+#include "raykiln/jobs/job_snapshot.hpp"
 #include "raykiln/render/render.hpp"
 #include "raykiln/workers/scene_report.hpp"
 
@@ -14,5 +15,10 @@ namespace raykiln::server {
 /// Precondition: validate(request) is success. The camera is looked up in the scene.
 [[nodiscard]] Result<render::RenderSettings> render_settings(const JobRequest& request,
                                                              const render::Scene& scene);
+
+/// Adds what the light model gets wrong in this scene ("heavy_tailed", "not_conserving_refraction"
+/// at "/light_model"); nothing that is there already.
+void warn_of_light_model(const render::RenderSettings& settings, const render::Scene& scene,
+                         std::vector<JobWarning>& warnings);
 
 }  // namespace raykiln::server
