@@ -1,6 +1,7 @@
 // Albedos of the lobes against values known in closed form, both ways of the light.
 #include <gtest/gtest.h>
 
+#include "raykiln/shading/fresnel.hpp"
 #include "support/bsdf_cases.hpp"
 
 namespace raykiln::render {
@@ -114,6 +115,62 @@ TEST(Energy, MixtureKeepsTheAbsorbedPart) {
       EXPECT_NEAR(mean.value(), truth, 4.0 * mean.sigma() + 1e-5);
     }
   }
+}
+
+/// Integral of f cos(theta_o) over directions of view on the other side of a border, for light that
+/// arrives along wi from index `from`. Views are drawn as the refractions of directions w about wi,
+/// whose density is that of w times (eta_o^2 cos_o)/(eta_i^2 cos_w).
+Mean flux_through(float index, double degrees, double exponent, const BsdfModel& model) {
+  const Material glass = make_material(0.0F, 1.0F, 1.0F, exponent, index);
+  const Vec3f wi = at_degrees(degrees);
+  const bool inside = wi.z < 0.0F;
+  const double eta_i = inside ? static_cast<double>(index) : 1.0, eta_o = inside ? 1.0 : static_cast<double>(index);
+  const Vec3d n(0.0, 0.0, inside ? -1.0 : 1.0);
+  Mean mean;
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    const VertexKey key = numbered(i, 3);
+    const double x = sample_one_minus_cos(uniform(key, Dimension::kDirectionU), exponent);
+    const Vec3d w(around_axis(wi, x, uniform(key, Dimension::kDirectionV)));
+    const double cos_w = dot(w, n);
+    const FresnelTerm border = cos_w > 0.0 ? fresnel_exact(cos_w, eta_i, eta_o) : FresnelTerm{.total_reflection = true};
+    if (border.total_reflection || !(border.cos_t > 0.0)) {
+      mean.add(0.0);
+      continue;
+    }
+    const Vec3f wo(refract(w, n, cos_w, border.cos_t, eta_i, eta_o));
+    const double density = cosine_power_pdf(x, exponent) * (eta_o * eta_o * border.cos_t) / (eta_i * eta_i * cos_w);
+    const double f = evaluate(bsdf_at(glass, wo, model), wi).f_cos.x / std::abs(static_cast<double>(wi.z));
+    mean.add(f * border.cos_t / density);
+  }
+  return mean;
+}
+
+// Does specular refraction conserve energy? With radiance scaled by (eta_o/eta_i)^2 what passes is
+// 1 - F and never more than 1, also for broad lobes; unscaled it is (1 - F) (eta_i/eta_o)^2: a gain
+// of n^2 on the way out of glass, a loss of 1/n^2 on the way in. 4 sigma each: false alarm 1e-3.
+TEST(Energy, RefractionConservesItOnlyIfRadianceIsScaled) {
+  BsdfModel unscaled;
+  unscaled.light.radiance_scaling = false;
+  for (const float index : {1.5F, 1.0F / 1.5F}) {
+    for (const double degrees : {0.0, 30.0, 160.0, 180.0}) {
+      const double n = static_cast<double>(index), cosine = std::abs(std::cos(degrees * kPi / 180.0));
+      const bool inside = degrees > 90.0;
+      const double gain = inside ? n * n : 1.0 / (n * n);
+      const double passed = 1.0 - fresnel_exact(cosine, inside ? n : 1.0, inside ? 1.0 : n).reflectance;
+      const Mean scaled = flux_through(index, degrees, 1e6, {});
+      EXPECT_NEAR(scaled.value(), passed, 4.0 * scaled.sigma() + 2e-3) << index << ' ' << degrees;
+      const Mean plain = flux_through(index, degrees, 1e6, unscaled);
+      EXPECT_NEAR(plain.value(), gain * passed, 4.0 * plain.sigma() + 5e-3) << index << ' ' << degrees;
+    }
+    for (double degrees = 0.0; degrees <= 180.0; degrees += 12.0) {
+      for (const double exponent : {1.0, 20.0}) {
+        const Mean broad = flux_through(index, degrees, exponent, {});
+        EXPECT_LE(broad.value(), 1.0 + 4.0 * broad.sigma()) << index << ' ' << degrees << ' ' << exponent;
+      }
+    }
+  }
+  EXPECT_GT(flux_through(1.5F, 180.0, 1e6, unscaled).value(), 2.0);
+  EXPECT_GT(flux_through(1.5F, 180.0, 1e6, support::kSeedBsdf).value(), 2.0);
 }
 
 TEST(Energy, DiffuseTransparentLosesNothing) {
