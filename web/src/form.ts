@@ -8,7 +8,11 @@ export type FormKey =
   | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
   | "width" | "height" | "samples" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
-  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling";
+  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | OverrideKey;
+
+/** Switches against the named light model; empty: as the model has it. */
+const kOverrides = ["phong", "fresnel", "radiance_scaling", "diffuse_sampling", "roulette"] as const;
+type OverrideKey = (typeof kOverrides)[number];
 
 export type FormValues = Record<FormKey, string>;
 export type FormErrors = Partial<Record<FormKey, string>>;
@@ -21,6 +25,7 @@ export const kDefaultForm: FormValues = {
   width: "640", height: "480", samples: "64", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
   light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true",
+  phong: "", fresnel: "", radiance_scaling: "", diffuse_sampling: "", roulette: "",
 };
 
 type Kind = "scene" | "camera" | "integer" | "number" | "vector" | "text" | "choice";
@@ -39,6 +44,9 @@ export interface FieldSpec {
   optional?: boolean;
   choices?: readonly (readonly [value: string, label: string])[];
 }
+
+const kAsModel = ["", "As the light model"] as const;
+const kSwitch = [kAsModel, ["true", "On"], ["false", "Off"]] as const;
 
 export const kFields: readonly FieldSpec[] = [
   { key: "scene", pointer: "/scene", label: "Scene", hint: "", kind: "scene", group: "main" },
@@ -64,6 +72,16 @@ export const kFields: readonly FieldSpec[] = [
     choices: [["bsdf", "By the material"], ["uniform_sphere", "Uniform (reference)"]] },
   { key: "emitter_sampling", pointer: "/emitter_sampling", label: "Emitter sampling", hint: "", kind: "choice", group: "more",
     choices: [["true", "On"], ["false", "Off"]] },
+  { key: "phong", pointer: "/light_model_overrides/phong", label: "Phong lobe over", hint: "", kind: "choice", group: "more",
+    choices: [kAsModel, ["max", "The larger cosine"], ["over_cos_o", "The viewer's cosine"]] },
+  { key: "fresnel", pointer: "/light_model_overrides/fresnel", label: "Fresnel", hint: "", kind: "choice", group: "more",
+    choices: [kAsModel, ["exact", "Exact"], ["schlick", "Schlick"]] },
+  { key: "radiance_scaling", pointer: "/light_model_overrides/radiance_scaling", label: "Radiance scaling", hint: "by n² in glass", kind: "choice", group: "more",
+    choices: kSwitch },
+  { key: "diffuse_sampling", pointer: "/light_model_overrides/diffuse_sampling", label: "Diffuse sampling", hint: "", kind: "choice", group: "more",
+    choices: [kAsModel, ["cosine", "Cosine"], ["uniform", "Uniform"]] },
+  { key: "roulette", pointer: "/light_model_overrides/roulette", label: "Russian roulette", hint: "", kind: "choice", group: "more",
+    choices: kSwitch },
 ];
 
 function parse_vector(text: string): Vec3 | null {
@@ -114,6 +132,7 @@ export function to_request(values: FormValues): JobRequest {
     height: number("height"),
     stop: { samples: number("samples") },
     light_model: values.light_model,
+    light_model_overrides: overrides(values),
     ...(values.max_depth.trim() === "" ? {} : { max_depth: number("max_depth") }),
     branches: number("branches"),
     seed: number("seed"),
@@ -123,6 +142,14 @@ export function to_request(values: FormValues): JobRequest {
     tile: number("tile"),
     priority: number("priority"),
   };
+}
+
+function overrides(values: FormValues): Record<string, string | boolean> {
+  const chosen = kOverrides.filter((key) => values[key] !== "");
+  return Object.fromEntries(chosen.map((key) => {
+    const value = values[key];
+    return [key, value === "true" || (value === "false" ? false : value)];
+  }));
 }
 
 function own_camera(values: FormValues): OwnCamera {
@@ -143,6 +170,10 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   ];
   const bag = request as unknown as Record<string, unknown>;
   for (const key of plain) if (bag[key] !== undefined) values[key] = String(bag[key]);
+  for (const key of kOverrides) {
+    const value = request.light_model_overrides?.[key];
+    if (value !== undefined) values[key] = String(value);
+  }
   values.samples = String(request.stop.samples);
   const camera = request.camera;
   if (typeof camera === "number") values.camera = String(camera);

@@ -27,6 +27,14 @@ describe("to_request and from_job", () => {
     expect(from_job(job({ request: to_request(values) }), [])).toEqual(values);
   });
 
+  test("the light model and its overrides survive the round", () => {
+    const values = filled({ light_model: "seed", fresnel: "exact", radiance_scaling: "true", roulette: "false" });
+    const request = to_request(values);
+    expect(request.light_model_overrides).toEqual({ fresnel: "exact", radiance_scaling: true, roulette: false });
+    expect(from_job(job({ request }), [])).toEqual(values);
+    expect(to_request(filled()).light_model_overrides).toEqual({});
+  });
+
   test("an own camera survives the round", () => {
     const values = filled({ camera: kOwnCamera, eye: "1, 2;  3.5", look_at: "0 0 -1", fov_deg: "55" });
     const request = to_request(values);
@@ -43,6 +51,6 @@ describe("to_request and from_job", () => {
 test("errors stand at the nearest field", () => {
   expect(place_errors([
     { pointer: "/width", message: "a" }, { pointer: "/stop/sample", message: "b" }, { pointer: "/camera/eye/0", message: "c" },
-    { pointer: "/camera", message: "d" }, { pointer: "/unknown", message: "e" }, { pointer: "/width", message: "second" },
-  ])).toEqual({ width: "a", samples: "b", eye: "c", camera: "d" });
+    { pointer: "/camera", message: "d" }, { pointer: "/light_model_overrides/fresnel", message: "f" }, { pointer: "/unknown", message: "e" }, { pointer: "/width", message: "second" },
+  ])).toEqual({ width: "a", samples: "b", eye: "c", camera: "d", fresnel: "f" });
 });

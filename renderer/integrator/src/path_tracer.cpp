@@ -34,6 +34,7 @@ void add(RenderStats& stats, const RenderStats& other) {
   stats.negative += other.negative;
   stats.lights_at_hits += other.lights_at_hits;
   stats.truncated += other.truncated;
+  stats.roulette_ends += other.roulette_ends;
   stats.closest_calls += other.closest_calls;
   stats.short_calls_while_many_live += other.short_calls_while_many_live;
   stats.traversal_seconds += other.traversal_seconds;

@@ -120,7 +120,10 @@ class VertexShader {
       child.throughput *= sample.weight / static_cast<double>(branches);
       child.scale *= sample.radiance_scale / static_cast<double>(branches);
       child.pdf = sample.pdf * static_cast<double>(branches);
-      if (settings_.bsdf.light.roulette && !survives_roulette(child, key)) continue;
+      if (settings_.bsdf.light.roulette && !survives_roulette(child, key)) {
+        ++sinks_.stats.roulette_ends;
+        continue;
+      }
       if (!finite(child.throughput)) {
         // Poisons the sample, which is then dropped, counted and located: never a silent black.
         sinks_.results[state_.slot].emitted += child.throughput;

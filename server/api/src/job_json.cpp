@@ -24,10 +24,20 @@ Json value_or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json statistics_value(const JobStatistics& s) {
+/// The command that renders this sample again; "" for a picture that is no job of a server.
+std::string replay_command(const JobId& job, const LocatedSample& at) {
+  if (job.empty()) return {};
+  return "raykiln replay " + job + ' ' + std::to_string(at.x) + ' ' + std::to_string(at.y) + ' ' +
+         std::to_string(at.sample);
+}
+
+Json statistics_value(const JobId& job, const JobStatistics& s) {
   Json bad = Json::array();
   for (const auto& sample : s.bad_samples) {
-    bad.push_back({{"x", sample.x}, {"y", sample.y}, {"sample", sample.sample}});
+    bad.push_back({{"x", sample.x},
+                   {"y", sample.y},
+                   {"sample", sample.sample},
+                   {"replay", replay_command(job, sample)}});
   }
   return {{"rays", s.rays()},
           {"camera_rays", s.camera_rays},
@@ -38,11 +48,17 @@ Json statistics_value(const JobStatistics& s) {
           {"non_finite_samples", s.non_finite},
           {"negative_samples", s.negative},
           {"truncated_paths", s.truncated},
+          {"roulette_ends", s.roulette_ends},
+          {"lights_at_hits", s.lights_at_hits},
+          {"stream_calls", s.stream_calls},
+          {"short_stream_calls", s.short_stream_calls},
           {"bad_samples", std::move(bad)},
           {"tree_build_seconds", value_or_null(s.tree_build_seconds)},
           {"prepare_seconds", s.prepare_seconds},
           {"render_seconds", s.render_seconds},
           {"worker_seconds", s.worker_seconds},
+          {"traversal_seconds", s.traversal_seconds},
+          {"shading_seconds", s.shading_seconds},
           {"idle_seconds", s.idle_seconds},
           {"merge_seconds", s.merge_seconds},
           {"publish_seconds", s.publish_seconds},
@@ -103,7 +119,7 @@ Json job_value(const JobSnapshot& job) {
           {"progress", progress_value(job)},
           {"elapsed_seconds", job.elapsed_seconds},
           {"remaining_seconds", is_final(job.state) ? Json(nullptr) : value_or_null(job.remaining_seconds)},
-          {"statistics", statistics_value(job.statistics)},
+          {"statistics", statistics_value(job.id, job.statistics)},
           {"warnings", std::move(warnings)},
           {"error", error_value(job)},
           {"image", image_value(job)}};

@@ -8,6 +8,7 @@
 #include "raykiln/render/render.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/scene_intake.hpp"
+#include "raykiln/workers/tile_counts.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -39,19 +40,7 @@ class Outbox {
 void add(JobStatistics& sum, const TileOutcome& outcome) {
   sum.worker_seconds += outcome.seconds;
   ++sum.tasks;
-  for (const auto& result : outcome.results) {
-    const auto& stats = result.stats;
-    sum.camera_rays += stats.camera_rays;
-    sum.bounce_rays += stats.bounce_rays;
-    sum.shadow_rays += stats.shadow_rays;
-    sum.paths += stats.paths;
-    sum.non_finite += stats.non_finite;
-    sum.negative += stats.negative;
-    sum.truncated += stats.truncated;
-    for (const auto& bad : result.bad_samples) {
-      if (sum.bad_samples.size() < 16) sum.bad_samples.push_back({bad.x, bad.y, bad.sample});
-    }
-  }
+  for (const auto& result : outcome.results) add_counts(sum, result);
 }
 
 std::vector<std::uint32_t> block_sizes(const std::vector<render::SampleBlock>& blocks) {

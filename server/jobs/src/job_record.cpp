@@ -74,6 +74,12 @@ void write_statistics(RecordWriter& r, const JobStatistics& s) {
   r.natural("stat.non_finite", s.non_finite);
   r.natural("stat.negative", s.negative);
   r.natural("stat.truncated", s.truncated);
+  r.natural("stat.roulette_ends", s.roulette_ends);
+  r.natural("stat.lights_at_hits", s.lights_at_hits);
+  r.natural("stat.stream_calls", s.stream_calls);
+  r.natural("stat.short_stream_calls", s.short_stream_calls);
+  r.real("stat.traversal_seconds", s.traversal_seconds);
+  r.real("stat.shading_seconds", s.shading_seconds);
   r.natural("stat.film_bytes", s.film_bytes);
   for (const LocatedSample& bad : s.bad_samples) {
     r.integer("bad.x", bad.x);
@@ -111,6 +117,12 @@ JobStatistics read_statistics(const RecordReader& r) {
   s.non_finite = r.natural("stat.non_finite");
   s.negative = r.natural("stat.negative");
   s.truncated = r.natural("stat.truncated");
+  s.roulette_ends = r.natural("stat.roulette_ends");
+  s.lights_at_hits = r.natural("stat.lights_at_hits");
+  s.stream_calls = r.natural("stat.stream_calls");
+  s.short_stream_calls = r.natural("stat.short_stream_calls");
+  s.traversal_seconds = r.real("stat.traversal_seconds");
+  s.shading_seconds = r.real("stat.shading_seconds");
   s.film_bytes = r.natural("stat.film_bytes");
   for (std::size_t i = 0; i < r.list("bad.x").size(); ++i) {
     s.bad_samples.push_back({number_at<int>(r.list("bad.x"), i), number_at<int>(r.list("bad.y"), i),

@@ -5,6 +5,7 @@
 
 #include "core.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
+#include "raykiln/workers/tile_counts.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -22,20 +23,6 @@ std::vector<std::uint32_t> samples_of(const std::vector<render::SampleBlock>& bl
   samples.reserve(blocks.size());
   for (const auto& block : blocks) samples.push_back(static_cast<std::uint32_t>(block.count));
   return samples;
-}
-
-void add_counts(JobStatistics& to, const render::TileResult& result) {
-  constexpr std::size_t kMaxLocated = 16;
-  to.paths += result.stats.paths;
-  to.camera_rays += result.stats.camera_rays;
-  to.bounce_rays += result.stats.bounce_rays;
-  to.shadow_rays += result.stats.shadow_rays;
-  to.non_finite += result.stats.non_finite;
-  to.negative += result.stats.negative;
-  to.truncated += result.stats.truncated;
-  for (const render::BadSample& bad : result.bad_samples) {
-    if (to.bad_samples.size() < kMaxLocated) to.bad_samples.push_back({bad.x, bad.y, bad.sample});
-  }
 }
 
 std::uint64_t rays_in(const render::TileResult& r) {

@@ -196,7 +196,7 @@ export class Mock {
         tiles_done: Math.floor(Math.max(0, fraction * 4 - 3) * tiles_total), tiles_total },
       elapsed_seconds: elapsed, remaining_seconds: Math.max(0, seconds - elapsed),
       statistics: { rays, camera_rays: Math.round(rays / 4), bounce_rays: Math.round(rays / 4), shadow_rays: Math.round(rays / 2), paths: Math.round(rays / 4),
-        rays_per_second: rays / Math.max(0.01, elapsed), non_finite_samples: 0, negative_samples: 0, truncated_paths: 12, bad_samples: [],
+        rays_per_second: rays / Math.max(0.01, elapsed), non_finite_samples: 0, negative_samples: 0, truncated_paths: 12, roulette_ends: 0, lights_at_hits: 0, stream_calls: 0, short_stream_calls: 0, bad_samples: [],
         tree_build_seconds: 0.084, prepare_seconds: 0.091, render_seconds: elapsed, worker_seconds: elapsed * 1.97, idle_seconds: 0.013,
         merge_seconds: 0.021, publish_seconds: 0.009, overhead_fraction: 0.0113, tasks: 118, retried_tasks: 0, film_bytes: 90112000 },
       image: { revision: job.revision + 1, png: "", exr: "" },

@@ -160,6 +160,16 @@ TEST(JobJson, FollowsTheContract) {
   EXPECT_EQ(parse_job_view(job_json(job))->error, "render_failed: why (where)");
 }
 
+TEST(JobJson, NamesTheCommandThatReplaysABadSample) {
+  auto job = snapshot();
+  job.statistics.bad_samples = {{3, 4, 17}};
+  auto bad = json::parse(job_json(job))["statistics"]["bad_samples"];
+  EXPECT_EQ(bad[0]["replay"], "raykiln replay j_1 3 4 17");
+  job.id.clear();  // a picture of the command line program
+  bad = json::parse(job_json(job))["statistics"]["bad_samples"];
+  EXPECT_EQ(bad[0]["replay"], "");
+}
+
 TEST(JobJson, IsOneLineEvenWithHostileText) {
   auto job = snapshot();
   job.request.name = "a\nb\r\xFF\xE2\x80\xA8";

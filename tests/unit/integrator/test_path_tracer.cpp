@@ -62,6 +62,22 @@ TEST_F(PathTracerTest, ScratchLeavesNothingBehind) {
   EXPECT_TRUE(std::equal(first.begin(), first.end(), second.begin(), equal));
 }
 
+TEST_F(PathTracerTest, PathsThatRouletteEndsAreCounted) {
+  const auto ended = [this](bool roulette) {
+    PathSettings settings;
+    settings.max_depth = 128;
+    settings.bsdf.light.roulette = roulette;
+    PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20), settings);
+    std::vector<PathResult> results(starts_.size());
+    RenderStats stats;
+    EXPECT_TRUE(tracer.trace(starts_, results, stats, {}));
+    EXPECT_LE(stats.roulette_ends, stats.camera_rays) << "one path ends once";
+    return stats.roulette_ends;
+  };
+  EXPECT_GT(ended(true), 0U);
+  EXPECT_EQ(ended(false), 0U);
+}
+
 TEST_F(PathTracerTest, DepthZeroSeesLampsAndPointLightsOnly) {
   PathSettings settings;
   settings.max_depth = 0;

@@ -69,6 +69,10 @@ TEST(JobRecord, ReadsBack) {
   job.started = job.created;
   job.statistics.bad_samples = {{1, 2, 3}, {4, 5, 6}};
   job.statistics.idle_seconds = 0.1;
+  job.statistics.roulette_ends = 5;
+  job.statistics.lights_at_hits = 6;
+  job.statistics.short_stream_calls = 7;
+  job.statistics.traversal_seconds = 0.25;
   job.progress.samples_done = 99;
   job.warnings = {{"a", "b", "c"}, {"d", "", ""}};
   job.error = Error{ErrorKind::kInternal, "render_failed", "why", "where"};
@@ -78,6 +82,10 @@ TEST(JobRecord, ReadsBack) {
   EXPECT_EQ(request_digest(back->request), request_digest(job.request));
   EXPECT_EQ(back->error->message, "why");
   EXPECT_EQ(back->statistics.bad_samples.at(1).sample, 6U);
+  EXPECT_EQ(back->statistics.roulette_ends, 5U);
+  EXPECT_EQ(back->statistics.lights_at_hits, 6U);
+  EXPECT_EQ(back->statistics.short_stream_calls, 7U);
+  EXPECT_EQ(back->statistics.traversal_seconds, 0.25);
   EXPECT_FALSE(back->finished);
   EXPECT_FALSE(decode_job("rubbish"));
 }

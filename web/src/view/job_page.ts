@@ -135,7 +135,8 @@ export class JobPage {
     set_text(this.cancel_, job.state === "cancelling" ? "Cancelling…" : "Cancel");
     set_hidden(this.again_, false);
     this.download_links(state, job, title);
-    this.statistics_.update(statistic_rows(job));
+    const replays = replay_rows(job);
+    this.statistics_.update([...statistic_rows(job), ...replays], replays.map(([name]) => name));
     this.settings_.update(setting_rows(job));
     const scene = state.scenes[job.scene];
     this.scene_.update(scene ? [...report(scene), ...tree_rows(scene.tree)] : [["Id", job.scene.slice(0, 16)]]);
@@ -237,10 +238,18 @@ function statistic_rows(job: Job): [string, string][] {
   return rows;
 }
 
+/** The commands that render the samples again that were not finite. */
+function replay_rows(job: Job): [string, string][] {
+  const list = job.statistics?.["bad_samples"];
+  if (!Array.isArray(list)) return [];
+  return list.map((bad: { replay?: unknown }, i) => [`Replay bad sample ${i + 1}`, String(bad.replay ?? "")]);
+}
+
 function setting_rows(job: Job): [string, string][] {
-  const { stop, scene: _scene, camera, name: _name, ...rest } = job.request;
+  const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, ...rest } = job.request;
   const rows: [string, string][] = [["Samples", count(stop.samples)]];
   rows.push(["Camera", typeof camera === "object" ? "own" : String(camera ?? 0)]);
+  for (const [key, value] of Object.entries(overrides ?? {})) rows.push([label_of(key), statistic(key, value)]);
   for (const [key, value] of Object.entries(rest)) rows.push([label_of(key), statistic(key === "seed" ? "" : key, value)]);
   rows.push(["Job", job.id]);
   return rows;

@@ -62,7 +62,13 @@ struct JobStatistics {
   std::uint64_t tasks = 0, retried_tasks = 0;
   std::uint64_t paths = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
-  std::uint64_t non_finite = 0, negative = 0, truncated = 0;
+  std::uint64_t non_finite = 0, negative = 0;
+  std::uint64_t truncated = 0;       ///< paths cut at the limit while they could go on
+  std::uint64_t roulette_ends = 0;   ///< paths that roulette ended
+  std::uint64_t lights_at_hits = 0;  ///< point lights at distance 0 from what they should light
+  std::uint64_t stream_calls = 0;    ///< calls into the tree for closest hits
+  std::uint64_t short_stream_calls = 0;  ///< of those, with fewer than 1024 rays while as many paths lived
+  double traversal_seconds = 0.0, shading_seconds = 0.0;  ///< parts of worker_seconds
   std::vector<LocatedSample> bad_samples;  ///< at most 16
   std::uint64_t film_bytes = 0;
 
