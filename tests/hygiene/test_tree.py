@@ -26,6 +26,7 @@ ARROWS = {
     "renderer/math": [],
     "renderer/sampling": ["renderer/math"],
     "renderer/image": ["renderer/math"],
+    "renderer/compare": ["renderer/math", "renderer/image"],
     "renderer/scene": ["renderer/math", "renderer/image"],
     "renderer/io": ["renderer/scene", "renderer/image"],
     "renderer/accel": ["renderer/math"],
@@ -44,7 +45,7 @@ ARROWS = {
     "server/api": ["server/scheduler", "server/store", "server/events"],
     "server/http": ["server/api"],
     "server/app": ["server/http", "server/api", "renderer/render", "renderer/lint",
-                   "renderer/selftest"],
+                   "renderer/selftest", "renderer/compare"],
 }
 # A package's headers, and the folders that may include them.
 PACKAGES = {
