@@ -7,20 +7,16 @@
 #include <cmath>
 #include <memory>
 
+#include "raykiln/image/display.hpp"
+
 namespace raykiln::render {
 namespace {
 
 constexpr float kLargestHalf = 65504.0F;
 constexpr float kHalfVanishes = 0x1p-25F;  ///< half of the smallest denormal, and a tie goes to even
 
-/// IEC 61966-2-1: linear to sRGB, both in [0, 1].
-double srgb_from_linear(double x) {
-  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-}
-
 std::uint8_t display_byte(double linear) {
-  if (!(linear > 0.0)) return 0;  // NaN too
-  return static_cast<std::uint8_t>(std::lround(255.0 * srgb_from_linear(std::min(linear, 1.0))));
+  return static_cast<std::uint8_t>(std::lround(255.0 * display_value(linear)));
 }
 
 OIIO::ImageSpec rgb_spec(const Image& image, OIIO::TypeDesc type) {

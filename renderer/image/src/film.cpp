@@ -27,14 +27,19 @@ Film::Film(int width, int height)
       height_(height),
       pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
-std::size_t Film::bytes_per_pixel() { return sizeof(Pixel) + sizeof(Tail); }
+std::uint64_t PixelSums::samples() const {
+  return std::accumulate(luminance_count.begin(), luminance_count.end(), std::uint64_t{0});
+}
+
+std::size_t Film::bytes_per_pixel() { return sizeof(PixelSums) + sizeof(Tail); }
 
 Film::Tail Film::read_block(const BlockResult& result, std::size_t pixel) {
   const auto& planes = result.planes.planes;
   const auto at = [&](BlockPlane::Index plane) { return planes[plane][pixel]; };
   Tail tail;
   std::copy_n(&planes[BlockPlane::kBeauty][3 * pixel], 3, tail.beauty.begin());
-  tail.moment = at(BlockPlane::kLuminanceMoment);
+  tail.luminance_moment = at(BlockPlane::kLuminanceMoment);
+  std::copy_n(&planes[BlockPlane::kMoment][3 * pixel], 3, tail.moment.begin());
   tail.largest = at(BlockPlane::kLargest);
   tail.counts = {as_count(at(BlockPlane::kNan)), as_count(at(BlockPlane::kInf)), as_count(at(BlockPlane::kNegative)),
                  as_count(at(BlockPlane::kTruncated))};
@@ -44,17 +49,25 @@ Film::Tail Film::read_block(const BlockResult& result, std::size_t pixel) {
 }
 
 // Chan, Golub & LeVeque 1979: M = M_a + M_b + (mean_b - mean_a)^2 n_a n_b / (n_a + n_b).
-void Film::fold_pixel(Pixel& into, const Tail& from) {
-  const double n_a = static_cast<double>(
-      std::accumulate(into.luminance_count.begin(), into.luminance_count.end(), std::uint64_t{0}));
+void Film::fold_pixel(PixelSums& into, const Tail& from) {
+  const double n_a = static_cast<double>(into.samples());
   const double n_b = from.samples;
   const double from_sum = sum_luminance(from.beauty);
-  into.moment += from.moment;
-  if (n_a > 0.0 && n_b > 0.0) {
+  const bool apart = n_a > 0.0 && n_b > 0.0;
+  const double weight = apart ? n_a * n_b / (n_a + n_b) : 0.0;
+  into.luminance_moment += from.luminance_moment;
+  if (apart) {
     const double difference = from_sum / n_b - sum_luminance(into.beauty) / n_a;
-    into.moment += difference * difference * (n_a * n_b / (n_a + n_b));
+    into.luminance_moment += difference * difference * weight;
   }
-  for (std::size_t c = 0; c < 3; ++c) into.beauty[c] += from.beauty[c];
+  for (std::size_t c = 0; c < 3; ++c) {
+    into.moment[c] += from.moment[c];
+    if (apart) {
+      const double difference = from.beauty[c] / n_b - into.beauty[c] / n_a;
+      into.moment[c] += difference * difference * weight;
+    }
+    into.beauty[c] += from.beauty[c];
+  }
   into.largest = std::max(into.largest, from.largest);
   into.counts.nan += from.counts.nan;
   into.counts.inf += from.counts.inf;
@@ -83,21 +96,20 @@ void Film::fold(const PixelRect& tile, const BlockResult& result) {
   }
 }
 
-Film::Pixel Film::whole(std::size_t pixel) const {
-  Pixel value = pixels_[pixel];
-  if (!tails_.empty()) fold_pixel(value, tails_[pixel]);
+PixelSums Film::pixel(std::size_t index) const {
+  PixelSums value = pixels_[index];
+  if (!tails_.empty()) fold_pixel(value, tails_[index]);
   return value;
 }
 
 Image Film::resolve() const {
   Image image{.width = width_, .height = height_, .rgb = std::vector<float>(3 * pixels_.size())};
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const Pixel pixel = whole(i);
-    const auto n = std::accumulate(pixel.luminance_count.begin(), pixel.luminance_count.end(),
-                                   std::uint64_t{0});
+    const PixelSums sums = pixel(i);
+    const std::uint64_t n = sums.samples();
     if (n == 0) continue;
     for (std::size_t c = 0; c < 3; ++c) {
-      image.rgb[3 * i + c] = static_cast<float>(pixel.beauty[c] / static_cast<double>(n));
+      image.rgb[3 * i + c] = static_cast<float>(sums.beauty[c] / static_cast<double>(n));
     }
   }
   return image;
@@ -106,28 +118,28 @@ Image Film::resolve() const {
 std::vector<double> Film::plane(std::string_view name) const {
   std::vector<double> values;
   const auto gather = [&](auto&& append) {
-    for (std::size_t i = 0; i < pixels_.size(); ++i) append(whole(i));
+    for (std::size_t i = 0; i < pixels_.size(); ++i) append(pixel(i));
     return values;
   };
   const auto push_all = [&](const auto& list) {
     for (const auto value : list) values.push_back(static_cast<double>(value));
   };
-  if (name == "beauty") return gather([&](const Pixel& p) { push_all(p.beauty); });
+  if (name == "beauty") return gather([&](const PixelSums& p) { push_all(p.beauty); });
   if (name == "samples") {
-    return gather([&](const Pixel& p) {
-      values.push_back(
-          std::accumulate(p.luminance_count.begin(), p.luminance_count.end(), 0.0));
+    return gather([&](const PixelSums& p) {
+      values.push_back(static_cast<double>(p.samples()));
     });
   }
-  if (name == "luminance_count") return gather([&](const Pixel& p) { push_all(p.luminance_count); });
-  if (name == "luminance_sum") return gather([&](const Pixel& p) { push_all(p.luminance_sum); });
-  if (name == "luminance_moment") return gather([&](const Pixel& p) { values.push_back(p.moment); });
-  if (name == "largest") return gather([&](const Pixel& p) { values.push_back(p.largest); });
-  if (name == "nan") return gather([&](const Pixel& p) { values.push_back(p.counts.nan); });
-  if (name == "inf") return gather([&](const Pixel& p) { values.push_back(p.counts.inf); });
-  if (name == "negative") return gather([&](const Pixel& p) { values.push_back(p.counts.negative); });
+  if (name == "luminance_count") return gather([&](const PixelSums& p) { push_all(p.luminance_count); });
+  if (name == "luminance_sum") return gather([&](const PixelSums& p) { push_all(p.luminance_sum); });
+  if (name == "luminance_moment") return gather([&](const PixelSums& p) { values.push_back(p.luminance_moment); });
+  if (name == "moment") return gather([&](const PixelSums& p) { push_all(p.moment); });
+  if (name == "largest") return gather([&](const PixelSums& p) { values.push_back(p.largest); });
+  if (name == "nan") return gather([&](const PixelSums& p) { values.push_back(p.counts.nan); });
+  if (name == "inf") return gather([&](const PixelSums& p) { values.push_back(p.counts.inf); });
+  if (name == "negative") return gather([&](const PixelSums& p) { values.push_back(p.counts.negative); });
   if (name == "truncated") {
-    return gather([&](const Pixel& p) { values.push_back(p.counts.truncated); });
+    return gather([&](const PixelSums& p) { values.push_back(p.counts.truncated); });
   }
   return values;
 }

@@ -12,6 +12,7 @@ constexpr std::array<PlaneSpec, BlockPlane::kCount> kBlockSpecs{{
     {"beauty", 3, Fold::kSum},
     {"samples", 1, Fold::kSum},
     {"luminance_moment", 1, Fold::kMoments},
+    {"moment", 3, Fold::kMoments},
     {"largest", 1, Fold::kMax},
     {"nan", 1, Fold::kSum},
     {"inf", 1, Fold::kSum},
@@ -23,6 +24,7 @@ constexpr std::array<PlaneSpec, BlockPlane::kCount + 2> kFilmSpecs{{
     kBlockSpecs[BlockPlane::kBeauty],
     kBlockSpecs[BlockPlane::kSamples],
     kBlockSpecs[BlockPlane::kLuminanceMoment],
+    kBlockSpecs[BlockPlane::kMoment],
     kBlockSpecs[BlockPlane::kLargest],
     kBlockSpecs[BlockPlane::kNan],
     kBlockSpecs[BlockPlane::kInf],
@@ -68,19 +70,24 @@ bool add_sample(PlaneSet& block, std::size_t pixel, const Rgbd& radiance, bool t
   if (radiance.x < 0.0 || radiance.y < 0.0 || radiance.z < 0.0) planes[BlockPlane::kNegative][pixel] += 1.0;
 
   double* beauty = &planes[BlockPlane::kBeauty][3 * pixel];
-  const double sum_before = luminance({beauty[0], beauty[1], beauty[2]});
+  const double y = luminance(radiance);
   const double count_before = planes[BlockPlane::kSamples][pixel];
+  if (count_before > 0.0) {
+    // Welford's update, written with the sums: M += (x - mean)^2 n / (n + 1).
+    // Divisions, not a reciprocal: equal samples have a deviation of exactly 0.
+    const double weight = count_before / (count_before + 1.0);
+    const double deviation = y - luminance({beauty[0], beauty[1], beauty[2]}) / count_before;
+    planes[BlockPlane::kLuminanceMoment][pixel] += deviation * deviation * weight;
+    double* moment = &planes[BlockPlane::kMoment][3 * pixel];
+    for (int c = 0; c < 3; ++c) {
+      const double of_channel = radiance[c] - beauty[c] / count_before;
+      moment[c] += of_channel * of_channel * weight;
+    }
+  }
   beauty[0] += radiance.x;
   beauty[1] += radiance.y;
   beauty[2] += radiance.z;
   planes[BlockPlane::kSamples][pixel] += 1.0;
-
-  const double y = luminance(radiance);
-  if (count_before > 0.0) {
-    const double deviation = y - sum_before / count_before;
-    planes[BlockPlane::kLuminanceMoment][pixel] +=
-        deviation * deviation * (count_before / (count_before + 1.0));
-  }
   planes[BlockPlane::kLargest][pixel] = std::max(planes[BlockPlane::kLargest][pixel], y);
   return true;
 }

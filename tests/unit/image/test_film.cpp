@@ -21,7 +21,7 @@ BlockResult block_of(std::uint64_t index, const std::vector<double>& values, boo
 const PixelRect kOnePixel{0, 0, 1, 1};
 
 TEST(Film, BytesPerPixelAreStatedAndModest) {
-  EXPECT_EQ(Film::bytes_per_pixel(), 216U);
+  EXPECT_EQ(Film::bytes_per_pixel(), 264U);
 }
 
 TEST(Film, MeanAndMomentsMatchTheTwoPassFormula) {
@@ -41,6 +41,21 @@ TEST(Film, MeanAndMomentsMatchTheTwoPassFormula) {
   EXPECT_EQ(film.plane("largest")[0], luminance(Rgbd(8.0)));
   EXPECT_EQ(film.plane("luminance_count"), (std::vector<double>{1, 1, 2, 4, 0, 0, 0, 0}));
   EXPECT_NEAR(film.plane("luminance_sum")[3], 9.0, 1e-12);
+}
+
+TEST(Film, ChannelsHaveMomentsOfTheirOwn) {
+  const std::vector<Rgbd> samples{{1, 0, 3}, {2, 0, 3}, {6, 0, 3}, {7, 1, 3}};
+  Film film(1, 1);
+  for (std::uint64_t b = 0, i = 0; b < 3; ++b) {
+    BlockResult block{.block = sample_block(b), .planes = make_block_planes(1)};
+    for (std::uint64_t k = 0; k < block.block.count; ++k) add_sample(block.planes, 0, samples[i++], false);
+    film.fold(kOnePixel, block);
+  }
+  const std::vector<double> moment = film.plane("moment");
+  EXPECT_NEAR(moment[0], 26.0, 1e-12);
+  EXPECT_NEAR(moment[1], 0.75, 1e-12);
+  EXPECT_EQ(moment[2], 0.0);
+  EXPECT_EQ(film.pixel(0).samples(), 4U);
 }
 
 // 1000 +- 0.01: the difference of squares would lose every digit in float and eight in double.

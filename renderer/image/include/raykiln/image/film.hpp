@@ -56,6 +56,7 @@ struct BlockPlane {
     kBeauty,            ///< 3 channels: sums of RGB radiance over the samples that count
     kSamples,           ///< samples that count: rendered and finite
     kLuminanceMoment,   ///< sum of squared deviations of luminance from its mean in this block
+    kMoment,            ///< 3 channels: the same of each channel
     kLargest,           ///< largest luminance of a sample (0 when there is none)
     kNan,               ///< samples dropped because a channel was NaN
     kInf,               ///< samples dropped because a channel did not fit a float32
@@ -98,6 +99,22 @@ struct Image {
   std::vector<float> rgb;
 };
 
+/// All that a film knows of a pixel: sums over the samples that count.
+struct PixelSums {
+  struct Counts {
+    std::uint32_t nan = 0, inf = 0, negative = 0, truncated = 0;
+  };
+  std::array<double, 3> beauty{};   ///< sums of RGB radiance
+  double luminance_moment = 0.0;    ///< sum of squared deviations of luminance from its mean
+  std::array<double, 3> moment{};   ///< the same of each channel
+  double largest = 0.0;             ///< largest luminance of a sample
+  Counts counts;
+  std::array<double, kReplicates> luminance_sum{};
+  std::array<std::uint32_t, kReplicates> luminance_count{};
+
+  [[nodiscard]] std::uint64_t samples() const;
+};
+
 /// Not thread-safe; one owner folds and reads.
 class Film {
  public:
@@ -119,37 +136,29 @@ class Film {
   /// there is no plane of that name.
   [[nodiscard]] std::vector<double> plane(std::string_view name) const;
 
+  /// One pixel, its incomplete block folded in. Index: y * width + x.
+  [[nodiscard]] PixelSums pixel(std::size_t index) const;
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
  private:
-  /// What a pixel holds of one block, or of all.
-  struct Counts {
-    std::uint32_t nan = 0, inf = 0, negative = 0, truncated = 0;
-  };
-  struct Pixel {
-    std::array<double, 3> beauty{};
-    double moment = 0.0;
-    double largest = 0.0;
-    Counts counts;
-    std::array<double, kReplicates> luminance_sum{};
-    std::array<std::uint32_t, kReplicates> luminance_count{};
-  };
+  /// What a pixel holds of one block.
   struct Tail {
     std::array<double, 3> beauty{};
-    double moment = 0.0;
+    double luminance_moment = 0.0;
+    std::array<double, 3> moment{};
     double largest = 0.0;
-    Counts counts;
+    PixelSums::Counts counts;
     std::uint32_t samples = 0;
     std::uint32_t replicate = 0;
   };
 
   static Tail read_block(const BlockResult& block, std::size_t pixel);
-  static void fold_pixel(Pixel& into, const Tail& from);
-  [[nodiscard]] Pixel whole(std::size_t pixel) const;
+  static void fold_pixel(PixelSums& into, const Tail& from);
 
   int width_, height_;
-  std::vector<Pixel> pixels_;
+  std::vector<PixelSums> pixels_;
   std::vector<Tail> tails_;  ///< the incomplete last blocks; empty until there is one
 };
 
