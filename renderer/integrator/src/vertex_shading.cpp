@@ -21,15 +21,12 @@ bool finite(const Rgbd& c) {
 }
 bool zero(const Rgb& c) { return c == Rgb(0.0F); }
 
-/// Reflections that roulette leaves alone: the first ones bring most of the light.
-constexpr std::uint32_t kBouncesBeforeRoulette = 3;
-
 /// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is its throughput
 /// so far. The part of the throughput that is a change of medium is left out of p: inside glass of
 /// index n radiance is n^2 times larger, on the way from the camera throughput n^2 times smaller,
 /// and such a path is worth no less. What goes on has a throughput of `scale`, so weights stay bounded.
 bool survives_roulette(PathState& path, const VertexKey& key) {
-  if (path.bounce <= kBouncesBeforeRoulette) return true;
+  if (path.bounce <= static_cast<std::uint32_t>(kBouncesBeforeRoulette)) return true;
   const Rgbd& t = path.throughput;
   const double p = std::max({t.x, t.y, t.z}) / path.scale;
   if (!(p < 1.0)) return true;  // also what is not finite: it is counted further on

@@ -33,6 +33,9 @@ struct LightModel {
   friend bool operator==(const LightModel&, const LightModel&) = default;
 };
 
+/// Reflections that roulette leaves alone: the first ones bring most of the light.
+inline constexpr int kBouncesBeforeRoulette = 3;
+
 inline constexpr LightModel kPhysicalModel{};
 /// The formulas of the seed's own text.
 inline constexpr LightModel kSeedModel{.phong = PhongCosine::kOverCosO,

@@ -1,0 +1,63 @@
+// One row of the table of effects: when an effect is called for, and what leaving it out does.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "raykiln/effects/effect.hpp"
+#include "raykiln/effects/scene_use.hpp"
+#include "raykiln/shading/light_model.hpp"
+
+namespace raykiln::render {
+
+/// What leaving an effect out does to the picture.
+enum class Grade : std::uint8_t {
+  kIdentical,  ///< not a bit of any plane of the film changes
+  kUnbiased,   ///< the same mean, other noise
+  kBounded,  ///< light is lost and none is added: no darker than black, no brighter than the truth
+  kUnbounded,  ///< light goes elsewhere
+};
+[[nodiscard]] std::string_view name(Grade grade);
+
+/// What of a job decides effects.
+struct EffectJob {
+  LightModel light_model = kPhysicalModel;
+  int max_depth = 8;  ///< reflections after the first hit
+  bool emitter_sampling = true;
+};
+
+struct EffectView {
+  const Scene& scene;
+  const SceneUse& use;
+  const EffectJob& job;
+};
+
+struct Judgement {
+  bool called_for = false;
+  std::string evidence;  ///< for people: the material, light or setting that decides
+};
+
+/// Where a row makes a scene call for its effect.
+struct EffectExample {
+  Scene& scene;
+  EffectJob& job;
+  std::uint32_t material = 0;  ///< some triangles have it, and they alone; free to be changed
+};
+
+struct EffectRow {
+  Effect effect;
+  const char* name;
+  const char* left_out;  ///< code, data and rays that are absent where it is not simulated
+  Grade grade;   ///< of leaving it out where it is not called for; auto leaves out kIdentical only
+  Grade forced;  ///< of leaving it out by name where it is called for
+  Judgement (*judge)(const EffectView&);
+  /// Adds what calls for the effect, where reflecting surfaces and light are there: tests draw
+  /// their scenes with it, so that they know an effect as soon as it has a row.
+  void (*provoke)(const EffectExample&);
+};
+
+/// All rows, the one of effect e at index e.
+[[nodiscard]] std::span<const EffectRow* const> effect_table();
+[[nodiscard]] const EffectRow& row_of(Effect effect);
+
+}  // namespace raykiln::render

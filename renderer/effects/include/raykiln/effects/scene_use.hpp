@@ -1,0 +1,23 @@
+// Which parts of a scene can matter: found by one walk over its triangles.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "raykiln/scene/scene.hpp"
+
+namespace raykiln::render {
+
+struct SceneUse {
+  std::uint64_t triangles = 0;
+  std::vector<std::uint32_t> materials;  ///< ids that a triangle has, ascending
+  /// First triangle that reflects and whose normal, interpolated, may differ from that of its
+  /// plane.
+  std::optional<std::uint32_t> smooth_triangle{};
+};
+
+/// O(triangles + materials).
+[[nodiscard]] SceneUse use_of(const Scene& scene);
+
+}  // namespace raykiln::render

@@ -1,0 +1,36 @@
+#include <array>
+
+#include "rows.hpp"
+
+namespace raykiln::render {
+namespace {
+
+constexpr std::array<const EffectRow*, kEffects> kTable{
+    &kPointLightsRow,         &kPointLightShadowsRow, &kAreaEmittersRow,
+    &kEmitterSamplingRow,     &kBackgroundRow,        &kDiffuseReflectionRow,
+    &kDiffuseTransmissionRow, &kGlossyLobesRow,       &kMirrorsRow,
+    &kRefractionRow,          &kFresnelRow,           &kShadingNormalsRow,
+    &kIndirectLightRow,       &kCausticsRow,          &kRouletteRow,
+};
+
+}  // namespace
+
+std::span<const EffectRow* const> effect_table() { return kTable; }
+
+const EffectRow& row_of(Effect effect) { return *kTable[static_cast<std::size_t>(effect)]; }
+
+std::string_view name(Grade grade) {
+  switch (grade) {
+    case Grade::kIdentical:
+      return "identical";
+    case Grade::kUnbiased:
+      return "unbiased";
+    case Grade::kBounded:
+      return "bounded";
+    case Grade::kUnbounded:
+      break;
+  }
+  return "unbounded";
+}
+
+}  // namespace raykiln::render

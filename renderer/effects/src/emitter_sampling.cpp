@@ -1,0 +1,36 @@
+#include <algorithm>
+
+#include "rows.hpp"
+#include "sources.hpp"
+
+namespace raykiln::render {
+namespace {
+
+Judgement judge(const EffectView& view) {
+  if (emitting_material(view) == nullptr)
+    return {false, "no triangle has a material with emission above 0"};
+  if (reflecting_material(view) == nullptr) return {false, "no surface reflects"};
+  if (!view.job.emitter_sampling) return {false, "the job has emitter_sampling false"};
+  if (view.job.max_depth < 1) return {false, "max_depth 0: emitters are only seen directly"};
+  return {true, "emitters light reflecting surfaces"};
+}
+
+void provoke(const EffectExample& at) {
+  row_of(Effect::kAreaEmitters).provoke(at);
+  at.job.emitter_sampling = true;
+  at.job.max_depth = std::max(at.job.max_depth, 1);
+}
+
+}  // namespace
+
+const EffectRow kEmitterSamplingRow{.effect = Effect::kEmitterSampling,
+                                    .name = "emitter_sampling",
+                                    .left_out =
+                                        "drawing points on emitters, their shadow rays and the "
+                                        "weights between both ways to an emitter",
+                                    .grade = Grade::kIdentical,
+                                    .forced = Grade::kUnbiased,
+                                    .judge = judge,
+                                    .provoke = provoke};
+
+}  // namespace raykiln::render

@@ -1,0 +1,67 @@
+#include "sources.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace raykiln::render {
+namespace {
+
+template <class Number>
+std::string shortest(Number value) {
+  std::array<char, 40> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+std::string quoted(const Material& material) { return "material `" + material.name + "`: "; }
+
+}  // namespace
+
+bool is_black(const Rgb& c) { return !(c.x > 0.0F || c.y > 0.0F || c.z > 0.0F); }
+
+std::uint64_t shining_point_lights(const EffectView& view) {
+  const auto& lights = view.scene.point_lights;
+  return static_cast<std::uint64_t>(std::count_if(
+      lights.begin(), lights.end(), [](const PointLight& l) { return !is_black(l.intensity); }));
+}
+
+const Material* emitting_material(const EffectView& view) {
+  return find_material(view, [](const Material& m) { return !is_black(m.emission); });
+}
+
+const Material* reflecting_material(const EffectView& view) {
+  return find_material(view, is_reflecting);
+}
+
+bool has_light(const EffectView& view) {
+  return !is_black(view.scene.background) || emitting_material(view) != nullptr ||
+         shining_point_lights(view) > 0;
+}
+
+bool reaches_two_surfaces(const EffectView& view) {
+  if (reflecting_material(view) == nullptr) return false;
+  if (view.job.max_depth >= 1 && shining_point_lights(view) > 0) return true;
+  return view.job.max_depth >= 2 &&
+         (!is_black(view.scene.background) || emitting_material(view) != nullptr);
+}
+
+std::string says(const Material& material, const char* field, double value) {
+  return quoted(material) + field + ' ' + shortest(value);
+}
+
+std::string says(const Material& material, const char* field, const Rgb& value) {
+  return quoted(material) + field + ' ' + text(value);
+}
+
+std::string text(const Rgb& value) {
+  return shortest(value.x) + ' ' + shortest(value.y) + ' ' + shortest(value.z);
+}
+
+Judgement of_surface(const EffectView& view, const Material* material, const std::string& evidence,
+                     const char* otherwise) {
+  if (!has_light(view)) return {false, "there is no light in the scene"};
+  if (material == nullptr) return {false, otherwise};
+  return {true, evidence};
+}
+
+}  // namespace raykiln::render

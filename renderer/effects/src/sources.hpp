@@ -1,0 +1,48 @@
+// Questions that several rows ask of a scene.
+#pragma once
+
+#include <string>
+
+#include "raykiln/effects/effect_row.hpp"
+
+namespace raykiln::render {
+
+/// Lobes at least this sharp count as mirrors, broader ones as gloss.
+inline constexpr double kMirrorExponent = 1e8;
+[[nodiscard]] inline bool is_sharp(const Material& m) { return m.specular_exp >= kMirrorExponent; }
+
+[[nodiscard]] bool is_black(const Rgb& c);  ///< no channel above 0
+[[nodiscard]] inline bool is_reflecting(const Material& m) {
+  return !is_black(m.diffuse) || !is_black(m.specular);
+}
+
+/// First material in use for which `holds`; null if there is none.
+template <class Predicate>
+const Material* find_material(const EffectView& view, Predicate&& holds) {
+  for (const std::uint32_t id : view.use.materials) {
+    if (holds(view.scene.materials[id])) return &view.scene.materials[id];
+  }
+  return nullptr;
+}
+
+[[nodiscard]] std::uint64_t shining_point_lights(const EffectView& view);
+[[nodiscard]] const Material* emitting_material(const EffectView& view);
+[[nodiscard]] const Material* reflecting_material(const EffectView& view);
+
+/// Is there any light at all, from point lights, emitters or the background?
+[[nodiscard]] bool has_light(const EffectView& view);
+
+/// Can light reach the camera by way of two surfaces? Point lights add at every hit, emitters and
+/// background where a further ray finds them.
+[[nodiscard]] bool reaches_two_surfaces(const EffectView& view);
+
+/// "material `glass`: transparent 1"
+[[nodiscard]] std::string says(const Material& material, const char* field, double value);
+[[nodiscard]] std::string says(const Material& material, const char* field, const Rgb& value);
+[[nodiscard]] std::string text(const Rgb& value);
+
+/// Verdict of an effect of surfaces: called for by `material` where there is light at all.
+[[nodiscard]] Judgement of_surface(const EffectView& view, const Material* material,
+                                   const std::string& evidence, const char* otherwise);
+
+}  // namespace raykiln::render

@@ -1,0 +1,62 @@
+#include <gtest/gtest.h>
+
+#include "raykiln/effects/effect_plan.hpp"
+#include "support/effect_scenes.hpp"
+
+namespace raykiln::render {
+namespace {
+
+EffectPlan plan(support::EffectScene s, const char* choice) {
+  const Scene& scene = s.builder.scene();
+  return plan_effects(scene, use_of(scene), {.max_depth = path_limit(s.settings)},
+                      effect_choice_of(choice).value());
+}
+
+TEST(EffectPlan, AutoSimulatesWhatIsCalledFor) {
+  const EffectPlan matte = plan(support::matte_point_light(), "auto");
+  EXPECT_TRUE(matte.called_for == (EffectSet{Effect::kPointLights, Effect::kPointLightShadows,
+                                             Effect::kDiffuseReflection}));
+  EXPECT_TRUE(matte.simulated == matte.called_for);
+  EXPECT_TRUE(matte.approximated().empty());
+  EXPECT_TRUE(plan(support::everything(), "auto").simulated == EffectSet::everything());
+}
+
+TEST(EffectPlan, AllSimulatesEverything) {
+  const EffectPlan all = plan(support::matte_point_light(), "all");
+  EXPECT_TRUE(all.simulated == EffectSet::everything());
+  EXPECT_TRUE(all.approximated().empty());
+  EXPECT_EQ(effects_label(all), "all");
+}
+
+TEST(EffectPlan, WhatIsLeftOutByNameIsMarked) {
+  const EffectPlan draft = plan(support::everything(), "without=refraction,roulette");
+  EXPECT_TRUE(draft.approximated() == (EffectSet{Effect::kRefraction, Effect::kRoulette}));
+  EXPECT_EQ(effects_label(draft),
+            "without=refraction,roulette (refraction bounded, roulette unbiased)");
+}
+
+TEST(EffectPlan, LeavingOutWhatIsNotCalledForIsNoApproximation) {
+  const EffectPlan same = plan(support::diffuse_cornell(), "without=refraction");
+  EXPECT_TRUE(same.approximated().empty());
+  EXPECT_EQ(effects_label(same), "without=refraction");
+}
+
+TEST(EffectPlan, WhatOnlyServesAnotherGoesWithIt) {
+  const EffectPlan dark = plan(support::everything(), "without=area_emitters,point_lights");
+  EXPECT_FALSE(dark.simulated.contains(Effect::kEmitterSampling));
+  EXPECT_FALSE(dark.simulated.contains(Effect::kPointLightShadows));
+}
+
+TEST(EffectPlan, HasAVerdictWithAReasonForEveryRow) {
+  for (const support::EffectScene& scene : support::named_effect_scenes()) {
+    const EffectPlan p = plan(scene, "auto");
+    ASSERT_EQ(p.verdicts.size(), kEffects);
+    for (const EffectVerdict& v : p.verdicts) {
+      EXPECT_FALSE(v.evidence.empty()) << name(v.effect);
+      EXPECT_EQ(v.called_for, v.simulated) << name(v.effect);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raykiln::render
