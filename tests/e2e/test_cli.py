@@ -46,7 +46,7 @@ def test_help_names_the_commands_and_exit_codes():
     shown = raykiln("--help")
     assert shown.returncode == 0
     for word in ("render", "submit", "watch", "fetch", "cancel", "scenes", "jobs", "health",
-                 "selftest", "lint", "replay"):
+                 "selftest", "lint", "replay", "compare"):
         assert word in shown.stdout, word
     assert "exit" in shown.stdout.lower(), "the exit codes belong to the help"
 

@@ -88,6 +88,36 @@ void add_job(CLI::App& command, CliOptions& options) {
   command.add_option("JOB", options.job, "job id")->required();
 }
 
+void add_comparison(CLI::App& command, ComparisonSettings& settings) {
+  command.add_option("--false-alarms", settings.noise.false_alarms,
+                     "chance that two renders of one scene are called different")
+      ->check(CLI::Range(1e-12, 0.5))
+      ->capture_default_str();
+  command.add_option("--tolerance", settings.noise.tolerance,
+                     "share of brightness by which blocks may change (0: any change counts)")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_flag("--thresholds", settings.use_thresholds, "judge by the thresholds below, not by noise");
+  auto& thresholds = settings.thresholds;
+  command.add_option("--absolute", thresholds.absolute, "a value fails beyond this and --relative")
+      ->check(CLI::NonNegativeNumber)->capture_default_str();
+  command.add_option("--relative", thresholds.relative, "share of the larger value")
+      ->check(CLI::NonNegativeNumber)->capture_default_str();
+  command.add_option("--failing-share", thresholds.failing_share, "of pixels that may fail")
+      ->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  command.add_option("--hard-limit", thresholds.hard_limit, "no value may differ by more (none)")
+      ->check(CLI::NonNegativeNumber);
+}
+
+void add_compare(CLI::App& app, CompareOptions& options) {
+  auto* compare = app.add_subcommand("compare", "is a render its reference, but for the noise of both");
+  compare->add_option("RENDER", options.render, ".exr or .png")->required();
+  compare->add_option("REFERENCE", options.reference, ".exr or .png")->required();
+  compare->add_option("--difference", options.difference, "PNG file: where it is brighter (red), darker (blue)");
+  compare->add_option("--z-map", options.z_map, "PNG file: where the difference exceeds the noise");
+  add_comparison(*compare, options.settings);
+}
+
 void add_commands(CLI::App& app, CliOptions& options) {
   auto* render = app.add_subcommand("render", "render a scene here, without a server");
   add_picture_options(*render, options);
@@ -104,6 +134,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   replay->add_option("Y", options.replay.y, "pixel row, from the top")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("SAMPLE", options.replay.sample, "index of the sample, from 0")->required();
 
+  add_compare(app, options.compare);
   auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
   add_picture_options(*submit, options);
   add_output(*submit, options, false);
@@ -164,6 +195,7 @@ ExitCode run_cli(const CliOptions& options) {
   if (options.command == "render") return render_command(options);
   if (options.command == "lint") return lint_command(options);
   if (options.command == "replay") return replay_command(options);
+  if (options.command == "compare") return compare_command(options);
   if (options.command == "selftest") return selftest_command(options);
   if (options.command == "submit") return submit_command(options);
   if (options.command == "watch") return watch_command(options);

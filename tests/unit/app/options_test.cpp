@@ -50,11 +50,20 @@ TEST(CliOptions, ReadsRender) {
   EXPECT_EQ(std::get<std::string>(cli({"submit", "a.obj", "--camera", "2nd"}).options.picture.request.camera), "2nd");
 }
 
+TEST(CliOptions, ReadsCompare) {
+  const auto parsed = cli({"compare", "a.exr", "b.exr", "--false-alarms", "0.05", "--z-map", "z.png"});
+  ASSERT_EQ(parsed.exit_code, -1);
+  EXPECT_EQ(parsed.options.compare.reference, "b.exr");
+  EXPECT_EQ(parsed.options.compare.z_map, "z.png");
+  EXPECT_DOUBLE_EQ(parsed.options.compare.settings.noise.false_alarms, 0.05);
+  EXPECT_FALSE(parsed.options.compare.settings.use_thresholds);
+}
+
 TEST(CliOptions, UsageErrorsAreTwo) {
   const std::vector<std::vector<const char*>> rows = {
       {}, {"paint"}, {"render"}, {"render", "a.obj"}, {"render", "a.obj", "-o", "a.jpg"},
       {"render", "a.obj", "-o", "a.exr", "--size", "320"}, {"render", "a.obj", "-o", "a.exr", "--samples", "0"},
-      {"watch"}};
+      {"watch"}, {"compare", "a.exr"}, {"compare", "a.exr", "b.exr", "--false-alarms", "2"}};
   for (const auto& row : rows) EXPECT_EQ(cli(row).exit_code, 2);
   EXPECT_EQ(cli({"--help"}).exit_code, 0);
 }

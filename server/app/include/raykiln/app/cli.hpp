@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "raykiln/app/comparison.hpp"
 #include "raykiln/app/exit_code.hpp"
 #include "raykiln/jobs/job_request.hpp"
 
@@ -25,6 +26,13 @@ struct ReplayPlace {
   std::uint64_t sample = 0;
 };
 
+/// What `compare` reads and writes.
+struct CompareOptions {
+  std::filesystem::path render, reference;
+  std::filesystem::path difference, z_map;  ///< PNG files to write; empty: none
+  ComparisonSettings settings;
+};
+
 struct CliOptions {
   std::string command;
   std::string server = "http://127.0.0.1:8080";
@@ -34,6 +42,7 @@ struct CliOptions {
   std::vector<std::filesystem::path> outputs;
   PictureOptions picture;
   ReplayPlace replay;
+  CompareOptions compare;
   int threads = 0;
   bool wait = false;
   std::string job;
@@ -60,6 +69,9 @@ struct ParsedCli {
 
 /// Renders one sample of one pixel again and prints its radiance, finite or not.
 [[nodiscard]] ExitCode replay_command(const CliOptions& options);
+
+/// Judges a render by its reference. kImageDiffers when the noise of both does not explain the difference.
+[[nodiscard]] ExitCode compare_command(const CliOptions& options);
 
 [[nodiscard]] ExitCode submit_command(const CliOptions& options);
 [[nodiscard]] ExitCode watch_command(const CliOptions& options);

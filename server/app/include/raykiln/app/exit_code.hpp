@@ -9,7 +9,7 @@ enum class ExitCode : int {
   kOk = 0,
   kFailure = 1,         ///< the machine: a file cannot be written, memory, a fault of this program
   kUsage = 2,           ///< the command line is wrong
-  kScene = 3,           ///< the scene is wrong or cannot be read
+  kScene = 3,           ///< the scene, or a picture to compare, is wrong or cannot be read
   kJobFailed = 4,
   kJobCancelled = 5,
   kNoServer = 6,        ///< the server cannot be reached, or went away
@@ -17,6 +17,7 @@ enum class ExitCode : int {
   kNotFound = 8,        ///< no such job, scene or picture
   kBusy = 9,            ///< the server cannot take more now: try later
   kCheckFailed = 10,    ///< selftest: a check failed; lint: the scene has errors
+  kImageDiffers = 11,   ///< compare: the render is not its reference
 };
 
 [[nodiscard]] inline int to_int(ExitCode code) { return static_cast<int>(code); }
@@ -26,14 +27,15 @@ enum class ExitCode : int {
          "  0  done\n"
          "  1  failure of this machine (file cannot be written, out of memory, internal fault)\n"
          "  2  wrong command line\n"
-         "  3  the scene is wrong or cannot be read\n"
+         "  3  the scene, or a picture to compare, is wrong or cannot be read\n"
          "  4  the job failed\n"
          "  5  the job was cancelled\n"
          "  6  the server cannot be reached\n"
          "  7  the server refused the request\n"
          "  8  no such job, scene or picture\n"
          "  9  the server is busy or stopping; try again later\n"
-         "  10 selftest: a check failed; lint: the scene has errors\n";
+         "  10 selftest: a check failed; lint: the scene has errors\n"
+         "  11 compare: the render differs from its reference\n";
 }
 
 }  // namespace raykiln::server
