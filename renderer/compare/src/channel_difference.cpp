@@ -6,7 +6,9 @@
 namespace raykiln::render {
 namespace {
 
-constexpr int kReach = 2;                ///< weights come from 5 x 5 pixels without the middle one
+/// Weights come from the pixels at a distance of 2 and 3. An error layer may pool 3 x 3 pixels, so that
+/// nearer ones could know this pixel's own samples.
+constexpr int kNear = 2, kFar = 3;
 constexpr double kWeightFloor = 0.01;    ///< of the median variance
 constexpr double kRounding = 0x1p-22;    ///< both means were rounded to float: 2^-24 each, with room
 
@@ -16,8 +18,11 @@ struct PixelMean {
 
 PixelMean at(const MeasuredImage& image, std::size_t pixel, int channel) {
   const std::size_t value = 3 * pixel + static_cast<std::size_t>(channel);
-  return {static_cast<double>(image.mean.rgb[value]), static_cast<double>(image.error[value]),
-          std::max(1.0, static_cast<double>(image.samples[pixel]))};
+  const double mean = static_cast<double>(image.mean.rgb[value]);
+  const double error = static_cast<double>(image.error[value]);
+  // An error that is not known is what one sample has: the difference itself then stands for it.
+  if (!std::isfinite(error)) return {mean, 0.0, 1.0};
+  return {mean, error, std::max(1.0, static_cast<double>(image.samples[pixel]))};
 }
 
 /// Sum of squared deviations behind a standard error e of n samples: e^2 n (n - 1).
@@ -45,17 +50,17 @@ double median_of_positive(const std::vector<double>& values) {
   return *middle;
 }
 
-/// Mean of the plane over the neighbours of each pixel, the pixel itself left out.
-std::vector<double> neighbour_means(const std::vector<double>& plane, int width, int height) {
+/// Mean of the plane over a ring around each pixel; 0 where the picture has none of it.
+std::vector<double> ring_means(const std::vector<double>& plane, int width, int height) {
   std::vector<double> means(plane.size());
   const auto w = static_cast<std::size_t>(width);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       double sum = 0.0;
       int count = 0;
-      for (int ny = std::max(0, y - kReach); ny <= std::min(height - 1, y + kReach); ++ny) {
-        for (int nx = std::max(0, x - kReach); nx <= std::min(width - 1, x + kReach); ++nx) {
-          if (nx == x && ny == y) continue;
+      for (int ny = std::max(0, y - kFar); ny <= std::min(height - 1, y + kFar); ++ny) {
+        for (int nx = std::max(0, x - kFar); nx <= std::min(width - 1, x + kFar); ++nx) {
+          if (std::max(std::abs(nx - x), std::abs(ny - y)) < kNear) continue;
           sum += plane[static_cast<std::size_t>(ny) * w + static_cast<std::size_t>(nx)];
           ++count;
         }
@@ -88,7 +93,7 @@ ChannelDifference channel_difference(const MeasuredImage& render, const Measured
     const double n = std::min(a.samples, b.samples);
     result.scale[i] = variance * ((n - 1.0) / n) + result.difference[i] * result.difference[i] / n;
   }
-  result.weight = neighbour_means(result.variance, result.width, result.height);
+  result.weight = ring_means(result.variance, result.width, result.height);
   const double floor = kWeightFloor * median_of_positive(result.variance);
   for (double& weight : result.weight) weight = 1.0 / std::sqrt(weight + floor);
   return result;

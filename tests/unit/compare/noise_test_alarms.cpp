@@ -61,6 +61,16 @@ TEST(NoiseTestAlarms, InfiniteVariance) {
   check("heavy tail", [](Random& r, int, int) { return heavy_tail(r); }, 8, 64);
 }
 
+TEST(NoiseTestAlarms, UnknownErrorsCountAsOneSample) {
+  const auto lost = [](std::uint64_t seed, double by) {
+    auto image = measure(24, 24, 16, seed, [by](Random& r, int, int) { return by * exponential(r); });
+    std::fill(image.error.begin(), image.error.end(), std::numeric_limits<float>::quiet_NaN());
+    return image;
+  };
+  EXPECT_FALSE(test_noise(lost(1, 1.0), lost(2, 1.0), {}).differs);
+  EXPECT_TRUE(test_noise(lost(1, 2.0), lost(2, 1.0), {}).differs);
+}
+
 TEST(NoiseTestAlarms, EqualPicturesHaveNoEvidence) {
   const auto a = measure(20, 10, 8, 1, graded);
   const NoiseVerdict verdict = test_noise(a, a, {});
