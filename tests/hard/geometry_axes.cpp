@@ -83,7 +83,7 @@ TEST(V01_AxisParallel, SignPatternsFromSplitPlanes) {
     }
     ASSERT_FALSE(inner.empty());
     std::vector<Ray> rays, tilted;
-    const std::uint64_t n = trials(20'000, 1'000'000);
+    const std::uint64_t n = trials(150'000, 1'500'000);
     for (std::uint64_t i = 0; i < n; ++i) {
       Ray ray;
       for (int k = 0; k < 3; ++k) ray.o[k] = random.uniform(box.lo[k], box.hi[k]);

@@ -222,7 +222,7 @@ TEST(V07_ShadowEnds, OccludersNearBothEndsAndAWallBehind) {
           "1e-6 D behind the light; as is and turned",
           "all three occluders block; the wall behind does not");
   TestRandom random(701);
-  const std::uint64_t n = trials(100'000, 1'000'000) / 2;
+  const std::uint64_t n = trials(100'000, 2'000'000) / 2;
   std::uint64_t leaked = 0, wrongly_dark = 0, blocked_rays = 0, free_rays = 0;
   for (const double distance : {1.0, 1e3, 1e6}) {
     for (const bool turned : {false, true}) {

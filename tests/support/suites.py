@@ -143,7 +143,7 @@ def page() -> Tally:
 
 
 def long_statistics() -> Tally:
-    return ctest("long", BUILD / "test", {"RAYKILN_LONG": "1"}, ["-L", "golden|property"])
+    return ctest("long", BUILD / "test", {"RAYKILN_LONG": "1"}, ["-L", "golden|property|hard"])
 
 
 NOT_SIZE = ["-m", "not size"]
@@ -171,7 +171,7 @@ SUITES = [
     Suite("tsan-e2e", "the daemon from outside, under TSan",
           lambda: pytest("tsan-e2e", "tests/e2e", *NOT_MEASURED, preset="tsan",
                          env={**SANITIZERS, "RAYKILN_SLOW": "15"}), ["web", "tsan"], True),
-    Suite("long", "golden and property tests with their long sample counts", long_statistics,
+    Suite("long", "golden, property and hard tests with their long sample counts", long_statistics,
           ["test"], True),
     Suite("size", "a scan of 871 thousand triangles, uploaded and rendered",
           lambda: pytest("size", "tests/e2e", "-m", "size"), ["web", "test"], True),
