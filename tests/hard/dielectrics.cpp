@@ -7,6 +7,7 @@
 #include "hard/support/hard_meshes.hpp"
 #include "hard/support/lobes.hpp"
 #include "hard/support/members.hpp"
+#include "hard/support/pictures.hpp"
 #include "hard/support/report.hpp"
 #include "raykiln/selftest/measure.hpp"
 #include "raykiln/selftest/small_scene.hpp"
@@ -139,9 +140,12 @@ void add_ball(SmallScene& s, std::uint32_t material, float radius, bool reversed
   }
 }
 
+// 8u supposes lobes that are deltas. Here a lobe is 4.5e-8 rad wide and its directions are rounded to
+// floats, so that cos_i and cos_o differ by some 1e-7 tan(theta) relative and a crossing weighs
+// cos_i/max(cos_i, cos_o): two crossings near the silhouette of the ball come to more than 8u.
 TEST(D03, IndexOneIsInvisibleInThePhysicalModel) {
   Row row("D03", "ball and slab of index 1 before a board of squares, 64 x 64 at 16 samples, with and without; Fresnel at 0 to 90 degrees",
-          "F = 0 at every angle; pixels differ by at most 8u, but for samples on the border of a square", "physical");
+          "F = 0 at every angle; pixels differ by at most 8u", "physical");
   double largest_f = 0.0;
   for (int i = 0; i <= 900; ++i) largest_f = std::max(largest_f, fresnel_exact(std::max(std::cos(0.1 * i * kDegree), 0.0), 1.0, 1.0).reflectance);
   std::array<std::vector<double>, 3> pictures;
@@ -158,17 +162,17 @@ TEST(D03, IndexOneIsInvisibleInThePhysicalModel) {
   double largest = 0.0;
   for (std::size_t kind = 1; kind < 3; ++kind) {
     for (std::size_t i = 0; i < pictures[0].size(); ++i) {
-      const double d = std::abs(pictures[kind][i] - pictures[0][i]) / std::max(pictures[0][i], 1e-30);
-      if (d > 8.0 * kUnit) ++beyond;
-      if (d < 1e-3) largest = std::max(largest, d);
+      const double d = relative_error(pictures[kind][i], pictures[0][i]) / kUnit;
+      beyond += d > 8.0 ? 1U : 0U;
+      largest = std::max(largest, d);
     }
   }
   row.measured("largest F", largest_f);
   row.never("pixels beyond 8u", beyond, 2 * pictures[0].size());
-  row.measured("largest difference below 1e-3, u", largest / kUnit);
+  row.measured("largest difference, u", largest);
   EXPECT_EQ(largest_f, 0.0);
-  // A direction is 1e-7 off after the lobe: of 131072 samples some may fall beside a square's edge.
-  EXPECT_LE(beyond, 2U);
+  EXPECT_LE(largest, 11.0);
+  if (beyond > 0) row.falls_short();
 }
 
 TEST(D03, IndexOneShowsSchlicksFloorInTheSeedModel) {
@@ -194,40 +198,50 @@ TEST(D03, IndexOneShowsSchlicksFloorInTheSeedModel) {
   row.measured("largest |z|", worst);
 }
 
+/// The picture of one ball in blocks of 8 x 8 pixels.
+std::vector<PixelEstimate> blocks_of_ball(float index, bool reversed, const LightModel& model, std::uint64_t seed,
+                                          std::uint64_t samples) {
+  SmallScene s;
+  add_board(s, -3.0F);
+  add_ball(s, s.material(clear_glass(index)), 1.0F, reversed);
+  s.look({0.3, 0.2, 4.0}, {0, 0, 0}, {0, 1, 0}, 0.55);
+  RenderSettings settings = square(64, model);
+  settings.max_depth = 16;
+  settings.seed = seed;
+  const Picture image = picture(s.scene(), settings, samples);
+  EXPECT_EQ(image.non_finite, 0U);
+  std::vector<PixelEstimate> blocks(64);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    PixelEstimate& block = blocks[i / 64 / 8 * 8 + i % 64 / 8];
+    block.mean += image.pixels[i].mean / 64.0;
+    block.variance_of_mean += image.pixels[i].variance_of_mean / 4096.0;
+  }
+  return blocks;
+}
+
 TEST(D04, IndexBelowOneAndReversedWinding) {
-  Row row("D04", "ball of index 1/n against ball of index n with its triangles reversed, n 1.5 and 2, 64 x 64 at 128 samples",
-          "blocks of 8 x 8 equal within 4 sigma (Sidak); beyond the critical angle all is reflected", "both");
+  Members members(404);
+  Row row("D04", "ball of index 1/n against ball of index n with its triangles reversed, n 1.5 at 128 samples, 2 and 2 members "
+          "1.1 to 2.5 at 64; 64 x 64 pixels" + members.note(),
+          "blocks of 8 x 8 equal within 4 sigma; beyond the critical angle all is reflected", "both");
+  std::uint64_t blocks = 0;
+  const std::array<double, 4> indices{1.5, 2.0, members.between(1.1, 2.5), members.between(1.1, 2.5)};
   for (const LightModel& model : {kPhysicalModel, kSeedModel}) {
     double worst = 0.0;
-    for (const float n : {1.5F, 2.0F}) {
-      std::array<std::vector<PixelEstimate>, 2> blocks;
-      for (std::size_t kind = 0; kind < 2; ++kind) {
-        SmallScene s;
-        add_board(s, -3.0F);
-        add_ball(s, s.material(clear_glass(kind == 0 ? 1.0F / n : n)), 1.0F, kind == 1);
-        s.look({0.3, 0.2, 4.0}, {0, 0, 0}, {0, 1, 0}, 0.55);
-        RenderSettings settings = square(64, model);
-        settings.max_depth = 16;
-        std::vector<Samples> sums(64);
-        for (int replicate = 0; replicate < 16; ++replicate) {
-          settings.seed = kind + 2 * static_cast<std::uint64_t>(replicate);
-          const auto pixels = measure(s.scene(), settings, 8).pixels;
-          std::vector<double> mean(64);
-          for (std::size_t i = 0; i < pixels.size(); ++i) mean[i / 64 / 8 * 8 + i % 64 / 8] += pixels[i] / 64.0;
-          for (std::size_t b = 0; b < 64; ++b) sums[b].add(mean[b]);
-        }
-        for (const Samples& b : sums) blocks[kind].push_back({b.mean, b.standard_error() * b.standard_error()});
-      }
-      for (std::size_t b = 0; b < 64; ++b) {
-        const double variance = blocks[0][b].variance_of_mean + blocks[1][b].variance_of_mean;
-        const double d = std::abs(blocks[0][b].mean - blocks[1][b].mean);
-        if (d > 1e-6) worst = std::max(worst, d / std::sqrt(variance));
+    for (const double n : indices) {
+      const std::uint64_t samples = n == 1.5 ? 128 : 64, seed = members.bits();
+      const auto a = blocks_of_ball(static_cast<float>(1.0 / n), false, model, seed, samples);
+      const auto b = blocks_of_ball(static_cast<float>(n), true, model, seed + 1, samples);
+      for (std::size_t i = 0; i < a.size(); ++i, ++blocks) {
+        const double sigma = std::sqrt(a[i].variance_of_mean + b[i].variance_of_mean);
+        const double d = std::abs(a[i].mean - b[i].mean);
+        if (d > 4.0 * kUnit * a[i].mean) worst = std::max(worst, d / sigma);
       }
     }
     row.measured(name(model) + ", largest |z|", worst);
-    // 16 replicates: Student's t with 30 degrees of freedom has 4 sigma where 192 blocks need 4.6.
-    EXPECT_LE(worst, 4.8) << name(model);
+    EXPECT_LE(worst, 4.0) << name(model);
   }
+  row.measured("blocks", blocks);
   const FresnelTerm beyond = fresnel_exact(std::cos(41.82 * kDegree), 1.0, 1.0 / 1.5);
   EXPECT_TRUE(beyond.total_reflection);
   EXPECT_FALSE(fresnel_exact(std::cos(41.80 * kDegree), 1.0, 1.0 / 1.5).total_reflection);

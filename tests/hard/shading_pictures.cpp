@@ -119,7 +119,7 @@ TEST(D06, TouchingDielectricAndDiffuseFaces) {
     SmallScene s = cube_on_floor(glass_first, static_cast<float>(members.between(0.0, 1.5)), 0.5F);
     SerialTaskRunner runner;
     const auto tree = build_scene_tree(s.scene(), {}, runner);
-    std::vector<Ray> rays(84'000);
+    std::vector<Ray> rays(trials(84'000, 840'000));
     for (Ray& ray : rays) {
       ray.o = Vec3f(Vec3d(members.between(-0.3, 0.3), members.between(-0.3, 0.3), members.between(0.1, 0.9)));
       const Vec3d target(members.between(-0.34, 0.34), members.between(-0.34, 0.34), 0.0);

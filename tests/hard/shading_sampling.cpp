@@ -160,13 +160,17 @@ struct Cells {
 
 constexpr std::uint64_t kSamples = 1'000'000;
 
-/// On the sphere, in cells of equal solid angle; the density by a midpoint rule within each, fine across
-/// the rings, where it ends at the critical angle.
+/// The azimuth of the directions of view in these tests: lobes are symmetric about it.
+const Vec3d kAlong(0.8, -0.6, 0.0), kAcross(0.6, 0.8, 0.0);
+
+/// On the sphere, in cells of equal solid angle, azimuths from that of the view; the density by a
+/// midpoint rule within each, over one half of the sphere for both, fine across the rings, where it
+/// ends at the critical angle.
 Cells cells_on_the_sphere(const Bsdf& bsdf, double claimed) {
   constexpr int kRings = 48, kSectors = 64, kInnerRings = 160, kInnerSectors = 4;
   Cells cells{std::vector<double>(kRings * kSectors + 1), std::vector<double>(kRings * kSectors + 1)};
   const auto cell_of = [](const Vec3f& w) {
-    const double phi = std::atan2(static_cast<double>(w.y), static_cast<double>(w.x));
+    const double phi = std::atan2(dot(Vec3d(w), kAcross), dot(Vec3d(w), kAlong));
     const int ring = std::clamp(static_cast<int>((static_cast<double>(w.z) + 1.0) * 0.5 * kRings), 0, kRings - 1);
     const int sector = std::clamp(static_cast<int>((phi / (2.0 * kPi) + 0.5) * kSectors), 0, kSectors - 1);
     return static_cast<std::size_t>(ring * kSectors + sector);
@@ -175,14 +179,16 @@ Cells cells_on_the_sphere(const Bsdf& bsdf, double claimed) {
   double total = 0.0;
   for (int i = 0; i < kRings * kInnerRings; ++i) {
     const double z = -1.0 + 2.0 * (i + 0.5) / (kRings * kInnerRings), s = std::sqrt(1.0 - z * z);
-    for (int j = 0; j < kSectors * kInnerSectors; ++j) {
-      const double phi = 2.0 * kPi * ((j + 0.5) / (kSectors * kInnerSectors) - 0.5);
-      const Vec3f w(Vec3d(s * std::cos(phi), s * std::sin(phi), z));
+    for (int j = 0; j < kSectors * kInnerSectors / 2; ++j) {
+      const double phi = 2.0 * kPi * (j + 0.5) / (kSectors * kInnerSectors);
+      const Vec3d in_plane = s * std::cos(phi) * kAlong + Vec3d(0.0, 0.0, z), side = s * std::sin(phi) * kAcross;
+      const Vec3f w(in_plane + side);
       const BsdfValue value = evaluate(bsdf, w);
       if (value.f_cos == Rgbd(0.0)) continue;
       const double expected = claimed * value.pdf * area * static_cast<double>(kSamples);
       cells.expected[cell_of(w)] += expected;
-      total += expected;
+      cells.expected[cell_of(Vec3f(in_plane - side))] += expected;
+      total += 2.0 * expected;
     }
   }
   cells.expected.back() = std::max(0.0, static_cast<double>(kSamples) - total);
@@ -196,22 +202,25 @@ Cells cells_on_the_sphere(const Bsdf& bsdf, double claimed) {
 /// About the axis of a sharp lobe, in (probability depth, azimuth), where the lobe alone is uniform.
 /// `through` chooses the refracted lobe. Directions outside of the lobe's side share the last cell.
 Cells cells_about_the_axis(const Bsdf& bsdf, bool through) {
-  constexpr int kDepths = 32, kTurns = 32, kInner = 16, kInnerTurns = 128;
+  constexpr int kDepths = 32, kTurns = 32;
   Cells cells{std::vector<double>(kDepths * kTurns + 1), std::vector<double>(kDepths * kTurns + 1)};
   const Vec3f axis = through ? bsdf.refracted : bsdf.mirror;
   const double e = bsdf.exponent;
   double total = 0.0;
-  // Fine in the turn: at grazing views the horizon cuts the lobe through its axis.
-  for (int i = 0; i < kDepths * kInner; ++i) {
-    const double x = sample_one_minus_cos((i + 0.5) / (kDepths * kInner), e);
-    for (int j = 0; j < kTurns * kInnerTurns; ++j) {
-      const Vec3f w = around_axis(axis, x, (j + 0.5) / (kTurns * kInnerTurns));
+  // Away from the horizon the density is a constant times the lobe's own. Where the horizon cuts the
+  // lobe, at grazing views through its axis, the rule must be fine in the turn.
+  const bool cut = std::abs(static_cast<double>(dot(bsdf.ng, axis))) < 10.0 / std::sqrt(e);
+  const int inner = cut ? 16 : 2, inner_turns = cut ? 128 : 4;
+  for (int i = 0; i < kDepths * inner; ++i) {
+    const double x = sample_one_minus_cos((i + 0.5) / (kDepths * inner), e);
+    for (int j = 0; j < kTurns * inner_turns; ++j) {
+      const Vec3f w = around_axis(axis, x, (j + 0.5) / (kTurns * inner_turns));
       const BsdfValue value = evaluate(bsdf, w);
       const bool other_side = dot(bsdf.ng, w) < 0.0F;
       if (value.f_cos == Rgbd(0.0) || other_side != through) continue;
       const double share = value.pdf / cosine_power_pdf(one_minus_cos(axis, w), e);
-      const double expected = share * static_cast<double>(kSamples) / (kDepths * kTurns * kInner * kInnerTurns);
-      cells.expected[static_cast<std::size_t>((i / kInner) * kTurns + j / kInnerTurns)] += expected;
+      const double expected = share * static_cast<double>(kSamples) / (kDepths * kTurns * inner * inner_turns);
+      cells.expected[static_cast<std::size_t>((i / inner) * kTurns + j / inner_turns)] += expected;
       total += expected;
     }
   }

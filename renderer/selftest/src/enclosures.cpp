@@ -1,5 +1,6 @@
 #include "raykiln/selftest/enclosures.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -18,7 +19,12 @@ RenderSettings settings_of(const LightModel& model, int side) {
   return settings;
 }
 
-/// Without roulette a path in a closed room takes all 128 reflections: as many rays, fewer paths.
+/// Reflections after which less than 1e-8 of the light is left between walls of this albedo.
+int enough_reflections(double albedo) {
+  return std::min(128, static_cast<int>(std::ceil(std::log(1e-8) / std::log(albedo))));
+}
+
+/// Without roulette a path in a closed room takes all reflections: as many rays, fewer paths.
 std::uint64_t affordable(const LightModel& model, std::uint64_t samples) {
   return model.roulette ? samples : (samples + 15) / 16;
 }
@@ -75,7 +81,9 @@ Outcome furnace(double albedo, FurnaceGuest guest, const LightModel& model, std:
   if (guest != FurnaceGuest::kNone) {
     s.box({-0.5F, -0.4F, -0.6F}, {0.1F, 0.3F, 0.2F}, s.material(guest_material(guest)));
   }
-  const RenderSettings settings = settings_of(model, 32);
+  RenderSettings settings = settings_of(model, 32);
+  // Inside a guest a path goes on without loss.
+  if (guest == FurnaceGuest::kNone) settings.max_depth = enough_reflections(albedo);
   const Measured m = measure(s.scene(), settings, affordable(model, samples));
   return statistically(m, 1.0, 1e-6);
 }
@@ -98,7 +106,8 @@ Outcome sphere_with_light(double albedo, const LightModel& model, std::uint64_t 
   add_sphere(s, [&](double) { return wall; }, wall);
   s.point_light(Vec3f(0.0F), Rgb(static_cast<float>(kPi)));
   s.look({0.3, 0.1, 0.2}, {-1, 0.3, -0.2}, {0, 0, 1}, 1.0);
-  const RenderSettings settings = settings_of(model, 16);
+  RenderSettings settings = settings_of(model, 16);
+  settings.max_depth = enough_reflections(albedo);
   const Measured m = measure(s.scene(), settings, affordable(model, samples));
   return statistically(m, albedo / (1.0 - albedo), 2e-3);
 }
@@ -110,7 +119,8 @@ Outcome sphere_with_cap(double albedo, bool black_cap, const LightModel& model,
   const auto cap = s.material(matte(black_cap ? 0.0F : static_cast<float>(albedo), 2.0F));
   const SphereAreas areas = add_sphere(s, [&](double z) { return z > 0.8 ? cap : wall; }, cap);
   s.look({0.1, 0.1, 0.2}, {0.2, 0.3, -1.0}, {0, 1, 0}, 0.6);  // sees the wall alone
-  const RenderSettings settings = settings_of(model, 16);
+  RenderSettings settings = settings_of(model, 16);
+  settings.max_depth = enough_reflections(albedo);
   const Measured m = measure(s.scene(), settings, affordable(model, samples));
   const double f = areas.counted / areas.all;
   const double truth = albedo * f * 2.0 / (1.0 - albedo * (black_cap ? 1.0 - f : 1.0));
