@@ -67,7 +67,7 @@ TEST_F(PathTracerTest, PathsThatRouletteEndsAreCounted) {
     PathSettings settings;
     settings.max_depth = 128;
     settings.bsdf.light.roulette = roulette;
-    PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20), settings);
+    PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20, bounds(*tree_)), settings);
     std::vector<PathResult> results(starts_.size());
     RenderStats stats;
     EXPECT_TRUE(tracer.trace(starts_, results, stats, {}));

@@ -43,8 +43,8 @@ TEST(Sidecar, SetsCamerasLightsBackgroundAndMaterials) {
   const Scene& scene = imported.scene;
   ASSERT_EQ(scene.cameras.size(), 1U);
   EXPECT_EQ(scene.cameras[0].eye, Vec3d(0, 0, 5));
-  EXPECT_EQ(scene.cameras[0].forward, Vec3f(0, 0, -1));
-  EXPECT_EQ(scene.cameras[0].right, Vec3f(1, 0, 0));
+  EXPECT_EQ(scene.cameras[0].forward, Vec3d(0, 0, -1));
+  EXPECT_EQ(scene.cameras[0].right, Vec3d(1, 0, 0));
   EXPECT_DOUBLE_EQ(scene.cameras[0].fov_y_rad, 0.5 * std::numbers::pi);
   ASSERT_EQ(scene.point_lights.size(), 1U);
   EXPECT_EQ(scene.point_lights[0].position, Vec3f(1, 2, 3));
