@@ -163,7 +163,7 @@ def test_priority_shares_the_workers(launch):
 WRONG_FIELDS = [
     ({"colour": 1}, "/colour", "unknown_field"),
     ({"stop": {"samples": 4, "time": 3}}, "/stop/time", "unknown_field"),
-    ({"stop": {}}, "/stop/samples", "missing_field"),
+    ({"stop": {}}, "/stop", "missing_field"),
     ({"width": "32"}, "/width", "wrong_type"),
     ({"width": 32.5}, "/width", None),
     ({"width": 0}, "/width", "out_of_range"),

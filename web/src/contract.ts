@@ -20,7 +20,7 @@ export interface JobRequest {
   camera?: number | string | OwnCamera;
   width: number;
   height: number;
-  stop: { samples: number };
+  stop: { samples?: number; seconds?: number; error?: number; tile_samples?: number[] };
   light_model?: string;
   light_model_overrides?: Record<string, string | boolean>;
   max_depth?: number;
@@ -51,6 +51,24 @@ export interface Warning {
   count?: number;
 }
 
+/** A value with its 95 % interval. */
+export interface Figure {
+  value: number;
+  low: number;
+  high: number;
+}
+
+/** How far a picture is from its limit; noise alone. */
+export interface Accuracy {
+  grade: "unknown" | "rough" | "measured";
+  error: Figure | null;
+  heavy_tailed: boolean;
+  notices: string[];
+  least_samples: number;
+  target: number | null;
+  target_reached: boolean | null;
+}
+
 export interface Job {
   id: string;
   scene: string;
@@ -73,6 +91,9 @@ export interface Job {
   elapsed_seconds: number;
   remaining_seconds: number | null;
   statistics: Record<string, unknown>;
+  /** Absent from servers that do not judge errors. */
+  accuracy?: Accuracy | null;
+  done_by?: "samples" | "seconds" | "error" | null;
   warnings: Warning[];
   error: ProblemView | null;
   image: { revision: number; png: string; exr: string } | null;

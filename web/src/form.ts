@@ -6,7 +6,7 @@ import type { FieldProblem } from "./problem";
 
 export type FormKey =
   | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
-  | "width" | "height" | "samples" | "max_depth"
+  | "width" | "height" | "samples" | "error" | "seconds" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
   | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | OverrideKey;
 
@@ -20,9 +20,11 @@ export type FormErrors = Partial<Record<FormKey, string>>;
 /** Value of the camera field that shows the fields of an own camera. */
 export const kOwnCamera = "own";
 
+const kMostSamples = 1048576;
+
 export const kDefaultForm: FormValues = {
   scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40",
-  width: "640", height: "480", samples: "64", max_depth: "",
+  width: "640", height: "480", samples: "64", error: "", seconds: "", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
   light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true",
   phong: "", fresnel: "", radiance_scaling: "", diffuse_sampling: "", roulette: "",
@@ -57,7 +59,9 @@ export const kFields: readonly FieldSpec[] = [
   { key: "fov_deg", pointer: "/camera/fov_deg", label: "Field of view", hint: "degrees", kind: "number", group: "camera" },
   { key: "width", pointer: "/width", label: "Width", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
   { key: "height", pointer: "/height", label: "Height", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
-  { key: "samples", pointer: "/stop/samples", label: "Samples", hint: "per pixel", kind: "integer", group: "main", min: 1, max: 1048576 },
+  { key: "samples", pointer: "/stop/samples", label: "Samples", hint: "per pixel, at most", kind: "integer", group: "main", min: 1, max: kMostSamples, optional: true },
+  { key: "error", pointer: "/stop/error", label: "Error target", hint: "%; stops when reached", kind: "number", group: "main", min: 0.01, max: 100, optional: true },
+  { key: "seconds", pointer: "/stop/seconds", label: "Time limit", hint: "seconds of rendering", kind: "number", group: "main", min: 0.001, max: 604800, optional: true },
   { key: "max_depth", pointer: "/max_depth", label: "Max depth", hint: "reflections; empty: by the light model", kind: "integer", group: "main", min: 0, max: 1024, optional: true },
   { key: "light_model", pointer: "/light_model", label: "Light model", hint: "", kind: "choice", group: "main",
     choices: [["physical", "Physical"], ["seed", "Seed (as first written)"]] },
@@ -98,12 +102,17 @@ function fault(spec: FieldSpec, text: string): string {
     return parse_vector(text) ? "" : "Enter three numbers, for example 0 1 4.";
   }
   if (spec.kind === "number") {
-    return text.trim() !== "" && Number.isFinite(Number(text)) ? "" : "Enter a number.";
+    if (text.trim() === "" || !Number.isFinite(Number(text))) return "Enter a number.";
+    return range_fault(spec, text);
   }
   if (spec.kind !== "integer") return "";
   if (!/^-?\d+$/.test(text.trim()) || !Number.isSafeInteger(Number(text))) {
     return "Enter a whole number.";
   }
+  return range_fault(spec, text);
+}
+
+function range_fault(spec: FieldSpec, text: string): string {
   if (spec.min !== undefined && Number(text) < spec.min) return `Enter ${spec.min} or more.`;
   if (spec.max !== undefined && Number(text) > spec.max) return `Enter ${spec.max} or less.`;
   return "";
@@ -118,7 +127,18 @@ export function check_form(values: FormValues): FormErrors {
     const reason = fault(spec, values[spec.key]);
     if (reason) errors[spec.key] = reason;
   }
+  if (!["samples", "error", "seconds"].some((key) => values[key as FormKey].trim() !== "")) {
+    errors.samples = "Say when to stop: samples, an error target or a time limit.";
+  }
   return errors;
+}
+
+/** What ends the picture; errors are typed in percent. */
+function stop_of(values: FormValues): JobRequest["stop"] {
+  const typed = (key: FormKey, per = 1): number | undefined =>
+    values[key].trim() === "" ? undefined : Number(values[key]) / per;
+  const all = { samples: typed("samples"), error: typed("error", 100), seconds: typed("seconds") };
+  return Object.fromEntries(Object.entries(all).filter(([, value]) => value !== undefined));
 }
 
 /** The request that checked `values` ask for. */
@@ -130,7 +150,7 @@ export function to_request(values: FormValues): JobRequest {
     camera: values.camera === kOwnCamera ? own_camera(values) : number("camera"),
     width: number("width"),
     height: number("height"),
-    stop: { samples: number("samples") },
+    stop: stop_of(values),
     light_model: values.light_model,
     light_model_overrides: overrides(values),
     ...(values.max_depth.trim() === "" ? {} : { max_depth: number("max_depth") }),
@@ -174,7 +194,12 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
     const value = request.light_model_overrides?.[key];
     if (value !== undefined) values[key] = String(value);
   }
-  values.samples = String(request.stop.samples);
+  const { samples, error, seconds } = request.stop;
+  // A job that stops otherwise carries the largest number of samples there may be.
+  const other = error !== undefined || seconds !== undefined;
+  values.samples = samples === undefined || (other && samples === kMostSamples) ? "" : String(samples);
+  values.error = error === undefined ? "" : String(Number((100 * error).toPrecision(12)));
+  values.seconds = seconds === undefined ? "" : String(seconds);
   const camera = request.camera;
   if (typeof camera === "number") values.camera = String(camera);
   if (typeof camera === "string") {

@@ -112,3 +112,6 @@ function precise_seconds(seconds: number): string {
   if (seconds !== 0 && Math.abs(seconds) < 1) return `${significant(seconds * 1000)} ms`;
   return seconds < 60 ? `${significant(seconds)} s` : duration(seconds);
 }
+
+/** An error as a share: "1.9 %", with two digits that count. */
+export const error_percent = (share: number): string => `${Number((100 * share).toPrecision(2))} %`;

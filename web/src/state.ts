@@ -220,9 +220,13 @@ function with_scenes(state: State, scenes: Scene[]): State {
 
 function with_field(state: State, key: FormKey, value: string): State {
   if (key === "scene") return chosen(state, value);
+  const form = { ...state.form, [key]: value };
+  // Who names a target does not mean it to be cut off by a number that nobody has typed.
+  const target = key === "error" || key === "seconds";
+  if (target && value !== "" && form.samples === kDefaultForm.samples) form.samples = "";
   return {
     ...state,
-    form: { ...state.form, [key]: value },
+    form,
     form_errors: without(state.form_errors, key),
   };
 }

@@ -42,6 +42,20 @@ describe("to_request and from_job", () => {
     expect(from_job(job({ request }), [])).toEqual({ ...values, eye: "1 2 3.5" });
   });
 
+  test("stops by error and time survive the round, typed in percent", () => {
+    const values = filled({ samples: "", error: "2.5", seconds: "60" });
+    const request = to_request(values);
+    expect(request.stop).toEqual({ error: 0.025, seconds: 60 });
+    expect(from_job(job({ request: { ...request, stop: { ...request.stop, samples: 1048576 } } }), [])).toEqual(values);
+    expect(to_request(filled()).stop).toEqual({ samples: 64 });
+  });
+
+  test("one of the stops is needed", () => {
+    expect(Object.keys(check_form(filled({ samples: "" })))).toEqual(["samples"]);
+    expect(check_form(filled({ samples: "", error: "2" }))).toEqual({});
+    expect(Object.keys(check_form(filled({ error: "0" })))).toEqual(["error"]);
+  });
+
   test("a camera by name becomes its index", () => {
     const request = { ...to_request(filled()), camera: "top" };
     expect(from_job(job({ request }), kScene.cameras).camera).toBe("1");

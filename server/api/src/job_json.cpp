@@ -62,6 +62,7 @@ Json statistics_value(const JobId& job, const JobStatistics& s) {
           {"idle_seconds", s.idle_seconds},
           {"merge_seconds", s.merge_seconds},
           {"publish_seconds", s.publish_seconds},
+          {"accuracy_seconds", s.accuracy_seconds},
           {"overhead_fraction", s.overhead_fraction()},
           {"tasks", s.tasks},
           {"retried_tasks", s.retried_tasks},
@@ -99,6 +100,26 @@ Json image_value(const JobSnapshot& job) {
           {"exr", base + "exr&rev=" + revision}};
 }
 
+Json figure_value(const ErrorFigure& figure) {
+  return {{"value", figure.value}, {"low", figure.low}, {"high", figure.high}};
+}
+
+Json accuracy_value(const JobSnapshot& job) {
+  if (!job.accuracy) return nullptr;
+  const PictureError& a = *job.accuracy;
+  const auto if_known = [&](const ErrorFigure& figure) { return a.known() ? figure_value(figure) : Json(nullptr); };
+  const auto& target = job.request.stop.error;
+  return {{"grade", a.grade},
+          {"error", if_known(a.error)},
+          {"rmse", if_known(a.rmse)},
+          {"display_rmse", if_known(a.display_rmse)},
+          {"heavy_tailed", a.heavy_tailed},
+          {"notices", a.notices},
+          {"least_samples", a.least_samples},
+          {"target", value_or_null(target)},
+          {"target_reached", target ? Json(target_met(job.request.stop, a)) : Json(nullptr)}};
+}
+
 Json job_value(const JobSnapshot& job) {
   Json warnings = Json::array();
   for (const auto& warning : job.warnings) {
@@ -120,6 +141,8 @@ Json job_value(const JobSnapshot& job) {
           {"elapsed_seconds", job.elapsed_seconds},
           {"remaining_seconds", is_final(job.state) ? Json(nullptr) : value_or_null(job.remaining_seconds)},
           {"statistics", statistics_value(job.id, job.statistics)},
+          {"accuracy", accuracy_value(job)},
+          {"done_by", job.done_by == DoneBy::kNone ? Json(nullptr) : Json(name(job.done_by))},
           {"warnings", std::move(warnings)},
           {"error", error_value(job)},
           {"image", image_value(job)}};

@@ -66,6 +66,23 @@ void read_camera(FieldReader& reader, Errors& errors, JobRequest& request) {
   }
 }
 
+std::optional<double> positive(FieldReader& reader, const char* name, double most) {
+  const auto value = reader.number(name);
+  if (!value || (*value > 0.0 && *value <= most)) return value;
+  reader.error(name, "out_of_range", "must be above 0 and at most " + std::to_string(static_cast<long long>(most)));
+  return std::nullopt;
+}
+
+/// Whether there is one for each tile is validate()'s to say.
+void read_tile_samples(FieldReader& reader, const json& list, const JobLimits& limits, StopRule& rule) {
+  const bool fits = list.is_array() && list.size() <= limits.max_tiles &&
+                    std::all_of(list.begin(), list.end(), [&](const json& n) {
+                      return n.is_number_unsigned() && n.get<std::uint64_t>() <= limits.max_samples;
+                    });
+  if (!fits) return reader.error("tile_samples", "wrong_type", "must be a list of samples, one a tile");
+  rule.tile_samples = list.get<std::vector<std::uint64_t>>();
+}
+
 void read_stop(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
   const json* value = reader.any("stop", Need::kRequired);
   if (value == nullptr) return;
@@ -73,10 +90,22 @@ void read_stop(FieldReader& reader, const JobLimits& limits, Errors& errors, Job
     return reader.error("stop", "wrong_type", "must be an object such as {\"samples\": 64}");
   }
   FieldReader stop(*value, reader.pointer_to("stop"), errors);
-  if (const auto samples = stop.natural("samples", {1, limits.max_samples}, Need::kRequired)) {
-    request.stop.samples = *samples;
-  }
+  StopRule& rule = request.stop;
+  const auto samples = stop.natural("samples", {1, limits.max_samples});
+  rule.seconds = positive(stop, "seconds", limits.max_seconds);
+  rule.error = positive(stop, "error", 1.0);
+  if (const auto* list = stop.any("tile_samples")) read_tile_samples(stop, *list, limits, rule);
   stop.finish();
+  const bool other = value->contains("seconds") || value->contains("error") || value->contains("tile_samples");
+  if (!samples && !other && !value->contains("samples")) {
+    return reader.error("stop", "missing_field", "needs samples, seconds or error");
+  }
+  rule.samples = samples.value_or(limits.max_samples);
+  if (!rule.tile_samples.empty() && !samples) {
+    rule.samples = std::max<std::uint64_t>(
+        1, *std::max_element(rule.tile_samples.begin(), rule.tile_samples.end()));
+  }
+  if (rule.error && !rule.seconds && !samples) rule.seconds = kDefaultErrorSeconds;
 }
 
 /// A switch of the light model that names one of two values.
@@ -166,6 +195,14 @@ std::variant<JobRequest, Problem> parse_job_request(std::string_view body, const
   return problem;
 }
 
+nlohmann::ordered_json stop_value(const StopRule& stop) {
+  nlohmann::ordered_json value{{"samples", stop.samples}};
+  if (stop.seconds) value["seconds"] = *stop.seconds;
+  if (stop.error) value["error"] = *stop.error;
+  if (!stop.tile_samples.empty()) value["tile_samples"] = stop.tile_samples;
+  return value;
+}
+
 nlohmann::ordered_json job_request_value(const JobRequest& request) {
   nlohmann::ordered_json camera;
   if (const auto* index = std::get_if<int>(&request.camera)) camera = *index;
@@ -179,7 +216,7 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"camera", std::move(camera)},
           {"width", request.width},
           {"height", request.height},
-          {"stop", {{"samples", request.stop.samples}}},
+          {"stop", stop_value(request.stop)},
           {"light_model", name(request.light_model)},
           {"light_model_overrides", overrides_value(request.light_model_overrides)},
           {"max_depth", depth_limit(request)},

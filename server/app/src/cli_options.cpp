@@ -49,6 +49,39 @@ void add_light_model(CLI::App& command, JobRequest& request) {
       "switches against the model, such as fresnel=schlick,roulette=false");
 }
 
+/// "0.02" or "2%".
+std::optional<double> read_error(std::string text) {
+  const bool percent = !text.empty() && text.back() == '%';
+  if (percent) text.pop_back();
+  double value = 0.0;
+  const auto* end = text.data() + text.size();
+  const auto [stop, fault] = std::from_chars(text.data(), end, value);
+  if (fault != std::errc{} || stop != end) return std::nullopt;
+  return percent ? value / 100.0 : value;
+}
+
+void add_stops(CLI::App& command, JobRequest& request) {
+  command.add_option_function<double>(
+             "--seconds", [&request](double seconds) { request.stop.seconds = seconds; },
+             "stop after so much time of rendering")
+      ->check(CLI::Range(1e-3, JobLimits{}.max_seconds));
+  command.add_option_function<std::string>(
+      "--error",
+      [&request](const std::string& text) {
+        request.stop.error = read_error(text);
+        if (!request.stop.error) throw CLI::ValidationError("--error wants a number such as 0.02 or 2%");
+      },
+      "stop when the 95 % interval of the error is below this, such as 2%");
+}
+
+/// Without a number of samples, time or error alone end the job.
+void complete_stops(const CLI::App& command, JobRequest& request) {
+  StopRule& stop = request.stop;
+  if ((!stop.seconds && !stop.error) || command.count("--samples") > 0) return;
+  stop.samples = JobLimits{}.max_samples;
+  if (stop.error && !stop.seconds) stop.seconds = kDefaultErrorSeconds;
+}
+
 void add_picture_options(CLI::App& command, CliOptions& options) {
   const JobLimits limits;
   JobRequest& request = options.picture.request;
@@ -56,6 +89,7 @@ void add_picture_options(CLI::App& command, CliOptions& options) {
   command.add_option("--samples", request.stop.samples, "samples per pixel")
       ->check(CLI::Range(std::uint64_t{1}, limits.max_samples))
       ->capture_default_str();
+  add_stops(command, request);
   command.add_option("--depth", request.max_depth,
                      "most reflections after the first hit (128 with roulette, else 8)")
       ->check(CLI::Range(0, limits.max_depth));
@@ -182,6 +216,8 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
     return parsed;
   }
   options.command = app.get_subcommands().front()->get_name();
+  const CLI::App* used = app.get_subcommands().front();
+  if (used->get_option_no_throw("--samples") != nullptr) complete_stops(*used, options.picture.request);
   options.picture.request.camera = camera_choice(options.picture.camera);
   for (const auto& output : options.outputs) {
     if (output.extension() == ".exr" || output.extension() == ".png") continue;

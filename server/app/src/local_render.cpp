@@ -1,11 +1,13 @@
 #include "raykiln/app/local_render.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
 
 #include "raykiln/render/render.hpp"
+#include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/scene_intake.hpp"
 #include "raykiln/workers/tile_counts.hpp"
@@ -61,7 +63,11 @@ class LocalJob {
         pool_(pool),
         blocks_(render::blocks_for(request.stop.samples)),
         plan_(request.width, request.height, request.tile, block_sizes(blocks_), TaskLength{}),
-        film_(request.width, request.height) {}
+        film_(request.width, request.height) {
+    const StopRule& stop = request.stop;
+    if (!stop.tile_samples.empty()) plan_.set_tile_samples(stop.tile_samples);
+    if (stop.error) plan_.set_limit(plan_.blocks_for(kErrorFloor));
+  }
 
   /// The first fault of a worker, or success.
   Status run(const std::function<void(const ProgressState&)>& progress) {
@@ -70,7 +76,10 @@ class LocalJob {
     std::optional<Error> fault;
     while (true) {
       if (!fault) feed();
-      if (plan_.items_in_flight() == 0) break;
+      if (plan_.items_in_flight() == 0) {
+        if (fault || !goes_on()) break;
+        continue;
+      }
       const TileOutcome outcome = outbox_.take();
       if (outcome.error && !fault) fault = outcome.error;
       fold(outcome);
@@ -80,17 +89,27 @@ class LocalJob {
     }
     statistics_.render_seconds = seconds();
     if (fault) return *fault;
+    accuracy_ = judge_picture(film_, request_.pixel_mode == PixelMode::kRandom);
     progress(state());
     return success();
   }
 
   [[nodiscard]] render::Image image() const { return film_.resolve(); }
   [[nodiscard]] const JobStatistics& statistics() const { return statistics_; }
+  /// What ended it, its error, and the samples of its tiles where they differ.
+  void tell(JobSnapshot& job) const {
+    job.done_by = done_by_;
+    job.accuracy = accuracy_;
+    auto samples = plan_.tile_samples();
+    const bool even = std::all_of(samples.begin(), samples.end(), [&](auto n) { return n == samples[0]; });
+    if (done_by_ == DoneBy::kSeconds && !even) job.tile_samples = std::move(samples);
+  }
   [[nodiscard]] RenderProgress progress() const {
     RenderProgress p;
     p.samples_done = plan_.samples_done();
     p.samples_target = plan_.samples_target();
-    p.samples_per_pixel = p.fraction() * static_cast<double>(request_.stop.samples);
+    p.samples_per_pixel = static_cast<double>(p.samples_done) / (double{1} * request_.width * request_.height);
+    p.stop_fraction = stop_fraction();
     p.tiles = plan_.tiles();
     p.tiles_started = plan_.tiles_started();
     p.tiles_done = plan_.tiles_done();
@@ -98,7 +117,29 @@ class LocalJob {
   }
 
  private:
+  /// Nothing is in flight: what ended the job, or more blocks to render.
+  bool goes_on() {
+    if (plan_.done()) done_by_ = DoneBy::kSamples;
+    else if (plan_.closed()) done_by_ = DoneBy::kSeconds;
+    else {
+      accuracy_ = judge_picture(film_, request_.pixel_mode == PixelMode::kRandom);
+      if (target_met(request_.stop, *accuracy_)) done_by_ = DoneBy::kError;
+    }
+    if (done_by_ != DoneBy::kNone) return false;
+    const render::SampleBlock& last = blocks_[plan_.limit() - 1];
+    plan_.set_limit(plan_.blocks_for(next_decision(last.first + last.count)));
+    return true;
+  }
+
+  [[nodiscard]] double stop_fraction() const {
+    if (done_by_ != DoneBy::kNone) return 1.0;
+    const StopRule& stop = request_.stop;
+    const double by_time = stop.seconds ? std::min(0.99, seconds() / *stop.seconds) : 0.0;
+    return std::max(by_time, accuracy_ ? target_fraction(stop, *accuracy_) : 0.0);
+  }
+
   void feed() {
+    if (request_.stop.seconds && seconds() >= *request_.stop.seconds && !plan_.closed()) plan_.close();
     // One more than there are workers, so that none waits for this thread.
     const auto most = static_cast<std::size_t>(pool_.concurrency()) + 2;
     while (plan_.items_in_flight() < most) {
@@ -150,6 +191,8 @@ class LocalJob {
   render::Film film_;
   Outbox outbox_;
   JobStatistics statistics_;
+  DoneBy done_by_ = DoneBy::kNone;
+  std::optional<PictureError> accuracy_;
   Steady::time_point begun_;
 };
 
@@ -199,6 +242,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   picture.job.state = JobState::kCompleted;
   picture.job.progress = job.progress();
   picture.job.statistics = job.statistics();
+  job.tell(picture.job);
   picture.job.statistics.prepare_seconds = prepare_seconds;
   picture.job.statistics.tree_build_seconds = build_seconds;
   picture.job.elapsed_seconds = since();

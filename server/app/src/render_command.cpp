@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <cstdio>
 #include <iostream>
 
 #include "output_file.hpp"
@@ -26,7 +27,7 @@ std::map<std::string, std::string> attributes(const LocalPicture& picture, const
   return {{"raykiln:scene", scene},
           {"raykiln:light_model", light_model_label(job.request.light_model, job.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(job.request.seed)},
-          {"raykiln:samples", std::to_string(job.request.stop.samples)},
+          {"raykiln:samples", std::to_string(job.progress.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(job.request))},
           {"raykiln:seconds", std::to_string(job.elapsed_seconds)},
           {"raykiln:version", RAYKILN_VERSION}};
@@ -51,6 +52,29 @@ ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
     return ExitCode::kFailure;
   }
   return ExitCode::kOk;
+}
+
+std::string percent(double fraction) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * fraction);
+  return text;
+}
+
+/// "error 1.9 % (95 %: 1.8 % to 2.0 %) after 121 samples, stopped by error; heavy_tailed".
+std::string accuracy_line(const JobSnapshot& job) {
+  if (!job.accuracy) return {};
+  const PictureError& a = *job.accuracy;
+  std::string line = "error " + (a.known() ? percent(a.error.value) + " (95 %: " + percent(a.error.low) + " to " +
+                                                 percent(a.error.high) + ')'
+                                           : std::string("unknown"));
+  char samples[32];
+  std::snprintf(samples, sizeof samples, "%.4g", a.mean_samples);
+  line += std::string(" after ") + samples + " samples, stopped by " + std::string(name(job.done_by));
+  if (job.request.stop.error && !target_met(job.request.stop, a)) {
+    line += "; target of " + percent(*job.request.stop.error) + " not reached";
+  }
+  for (const std::string& notice : a.notices) line += "; " + notice;
+  return line;
 }
 
 }  // namespace
@@ -81,6 +105,7 @@ ExitCode render_command(const CliOptions& options) {
       std::cerr << '\n';
     }
   }
+  if (!options.quiet) std::cerr << accuracy_line(picture->job) << '\n';
   const auto code = write_pictures(options, *picture, *scene);
   if (options.json && code == ExitCode::kOk) std::cout << job_json(picture->job) << '\n';
   return code;

@@ -4,6 +4,7 @@
 
 #include "raykiln/base/record.hpp"
 #include "raykiln/jobs/job_snapshot.hpp"
+#include "accuracy_record.hpp"
 #include "request_record.hpp"
 
 namespace raykiln::server {
@@ -65,6 +66,7 @@ void write_statistics(RecordWriter& r, const JobStatistics& s) {
   r.real("stat.idle_seconds", s.idle_seconds);
   r.real("stat.merge_seconds", s.merge_seconds);
   r.real("stat.publish_seconds", s.publish_seconds);
+  r.real("stat.accuracy_seconds", s.accuracy_seconds);
   r.natural("stat.tasks", s.tasks);
   r.natural("stat.retried_tasks", s.retried_tasks);
   r.natural("stat.paths", s.paths);
@@ -108,6 +110,7 @@ JobStatistics read_statistics(const RecordReader& r) {
   s.idle_seconds = r.real("stat.idle_seconds");
   s.merge_seconds = r.real("stat.merge_seconds");
   s.publish_seconds = r.real("stat.publish_seconds");
+  s.accuracy_seconds = r.real("stat.accuracy_seconds");
   s.tasks = r.natural("stat.tasks");
   s.retried_tasks = r.natural("stat.retried_tasks");
   s.paths = r.natural("stat.paths");
@@ -135,6 +138,7 @@ void write_progress(RecordWriter& r, const RenderProgress& p) {
   r.natural("progress.samples_done", p.samples_done);
   r.natural("progress.samples_target", p.samples_target);
   r.real("progress.samples_per_pixel", p.samples_per_pixel);
+  r.real("progress.stop_fraction", p.stop_fraction);
   r.integer("progress.tiles", p.tiles);
   r.integer("progress.tiles_started", p.tiles_started);
   r.integer("progress.tiles_done", p.tiles_done);
@@ -145,6 +149,7 @@ RenderProgress read_progress(const RecordReader& r) {
   p.samples_done = r.natural("progress.samples_done");
   p.samples_target = r.natural("progress.samples_target");
   p.samples_per_pixel = r.real("progress.samples_per_pixel");
+  p.stop_fraction = r.real("progress.stop_fraction");
   p.tiles = static_cast<int>(r.integer("progress.tiles"));
   p.tiles_started = static_cast<int>(r.integer("progress.tiles_started"));
   p.tiles_done = static_cast<int>(r.integer("progress.tiles_done"));
@@ -175,6 +180,9 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   r.integer("width", q.width);
   r.integer("height", q.height);
   r.natural("stop.samples", q.stop.samples);
+  if (q.stop.seconds) r.real("stop.seconds", *q.stop.seconds);
+  if (q.stop.error) r.real("stop.error", *q.stop.error);
+  for (const std::uint64_t samples : q.stop.tile_samples) r.natural("stop.tile_samples", samples);
   r.text("light_model", name(q.light_model));
   r.text("light_model_overrides", overrides_text(q.light_model_overrides));
   r.integer("max_depth", depth_limit(q));
@@ -195,6 +203,9 @@ JobRequest read_request(const RecordReader& r) {
   q.width = static_cast<int>(r.integer("width", q.width));
   q.height = static_cast<int>(r.integer("height", q.height));
   q.stop.samples = r.natural("stop.samples", q.stop.samples);
+  if (r.has("stop.seconds")) q.stop.seconds = r.real("stop.seconds");
+  if (r.has("stop.error")) q.stop.error = r.real("stop.error");
+  q.stop.tile_samples = naturals(r.list("stop.tile_samples"));
   q.light_model = light_model_named(r.text("light_model")).value_or(q.light_model);
   q.light_model_overrides = overrides_of(r.text("light_model_overrides")).value_or(LightModelOverrides{});
   q.max_depth = static_cast<int>(r.integer("max_depth", depth_limit(q)));
@@ -232,6 +243,7 @@ std::string encode_job(const JobSnapshot& job) {
   r.real("elapsed_seconds", job.elapsed_seconds);
   write_progress(r, job.progress);
   write_statistics(r, job.statistics);
+  write_accuracy(r, job);
   for (const JobWarning& warning : job.warnings) {
     r.text("warning.code", warning.code);
     r.text("warning.message", warning.message);
@@ -259,6 +271,7 @@ std::optional<JobSnapshot> decode_job(std::string_view text) {
   job.elapsed_seconds = r.real("elapsed_seconds");
   job.progress = read_progress(r);
   job.statistics = read_statistics(r);
+  read_accuracy(r, job);
   for (std::size_t i = 0; i < r.list("warning.code").size(); ++i) {
     job.warnings.push_back({text_at(r.list("warning.code"), i), text_at(r.list("warning.message"), i),
                             text_at(r.list("warning.where"), i)});

@@ -12,6 +12,7 @@ namespace {
 
 /// Larger coordinates than this are no camera of any scene that the importer takes.
 constexpr double kMaxCoordinate = 1e15;
+constexpr double kLeastErrorTarget = 1e-4, kLargestErrorTarget = 1.0;
 
 Error wrong(std::string where, std::string message) {
   return {ErrorKind::kInvalid, "invalid_request", std::move(message), std::move(where)};
@@ -68,6 +69,30 @@ std::optional<Error> tiles_error(const JobRequest& r, const JobLimits& limits) {
   if (across * down <= limits.max_tiles) return std::nullopt;
   return wrong("/tile", "would cut the picture into more than " +
                             std::to_string(limits.max_tiles) + " tiles");
+}
+
+std::optional<Error> stop_error(const JobRequest& r, const JobLimits& limits) {
+  const StopRule& stop = r.stop;
+  if (stop.seconds && !(*stop.seconds > 0.0 && *stop.seconds <= limits.max_seconds)) {
+    return wrong("/stop/seconds", "must be above 0 and at most " +
+                                      std::to_string(static_cast<long long>(limits.max_seconds)));
+  }
+  if (stop.error && !(*stop.error >= kLeastErrorTarget && *stop.error <= kLargestErrorTarget)) {
+    return wrong("/stop/error", "must be from 0.0001 to 1");
+  }
+  if (stop.tile_samples.empty()) return std::nullopt;
+  if (stop.error || stop.seconds) {
+    return wrong("/stop/tile_samples", "goes with neither seconds nor error");
+  }
+  const auto tiles = static_cast<std::size_t>((r.width + r.tile - 1) / r.tile) *
+                     static_cast<std::size_t>((r.height + r.tile - 1) / r.tile);
+  if (stop.tile_samples.size() != tiles) {
+    return wrong("/stop/tile_samples", "must have one number a tile: " + std::to_string(tiles));
+  }
+  for (const std::uint64_t samples : stop.tile_samples) {
+    if (samples > stop.samples) return wrong("/stop/tile_samples", "must not exceed /stop/samples");
+  }
+  return std::nullopt;
 }
 
 std::optional<Error> branches_error(const JobRequest& r, const JobLimits& limits) {
@@ -140,6 +165,7 @@ Status validate(const JobRequest& request, const JobLimits& limits) {
   if (auto e = camera_error(request.camera)) return *e;
   if (auto e = range_error(request, limits)) return *e;
   if (auto e = tiles_error(request, limits)) return *e;
+  if (auto e = stop_error(request, limits)) return *e;
   if (auto e = branches_error(request, limits)) return *e;
   return success();
 }

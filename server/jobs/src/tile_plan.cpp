@@ -36,7 +36,11 @@ std::vector<TileRect> cut_tiles(int width, int height, int tile) {
 
 TilePlan::TilePlan(int width, int height, int tile, const std::vector<std::uint32_t>& block_samples,
                    const TaskLength& length)
-    : samples_before_{0}, length_(length) {
+    : samples_before_{0},
+      length_(length),
+      tile_side_(tile),
+      tiles_across_((width + tile - 1) / tile),
+      limit_(block_samples.size()) {
   for (const std::uint32_t samples : block_samples) {
     samples_before_.push_back(samples_before_.back() + samples);
   }
@@ -44,8 +48,62 @@ TilePlan::TilePlan(int width, int height, int tile, const std::vector<std::uint3
     ready_.emplace(0, tiles_.size());
     Tile& added = tiles_.emplace_back();
     added.rect = rect;
+    added.end_block = limit_;
   }
   samples_target_ = TileRect{0, 0, width, height}.pixels() * samples_before_.back();
+}
+
+std::size_t TilePlan::end_of(const Tile& tile) const { return std::min(tile.end_block, limit_); }
+
+std::size_t TilePlan::row_major(const Tile& tile) const {
+  return static_cast<std::size_t>(tile.rect.y0 / tile_side_) * static_cast<std::size_t>(tiles_across_) +
+         static_cast<std::size_t>(tile.rect.x0 / tile_side_);
+}
+
+std::size_t TilePlan::blocks_for(std::uint64_t samples) const {
+  const auto enough = std::lower_bound(samples_before_.begin(), samples_before_.end(), samples);
+  return std::min(static_cast<std::size_t>(enough - samples_before_.begin()), blocks());
+}
+
+void TilePlan::set_limit(std::size_t end_block) {
+  limit_ = std::min(end_block, blocks());
+  if (closed_) return;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    const Tile& tile = tiles_[i];
+    const bool parked = tile.bands_in_flight == 0 && tile.pass_end <= tile.next_block;
+    if (parked && tile.next_block < end_of(tile)) ready_.emplace(tile.next_block, i);
+    if (parked && tile.next_block >= end_of(tile)) ready_.erase({tile.next_block, i});
+  }
+}
+
+void TilePlan::set_tile_samples(const std::vector<std::uint64_t>& samples) {
+  samples_target_ = 0;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    Tile& tile = tiles_[i];
+    const auto above = std::upper_bound(samples_before_.begin(), samples_before_.end(),
+                                        samples.at(row_major(tile)));
+    tile.end_block = static_cast<std::size_t>(above - samples_before_.begin()) - 1;
+    samples_target_ += tile.rect.pixels() * samples_before_[tile.end_block];
+    if (tile.end_block > 0) continue;
+    ready_.erase({0, i});
+    ++tiles_done_;
+  }
+}
+
+void TilePlan::close() {
+  closed_ = true;
+  std::erase_if(ready_, [this](const auto& entry) {
+    Tile& tile = tiles_[entry.second];
+    if (tile.pass_end > tile.next_block && tile.next_row > tile.rect.y0) return false;
+    tile.pass_end = tile.next_block;  // opened, but nothing of it was handed out
+    return true;
+  });
+}
+
+std::vector<std::uint64_t> TilePlan::tile_samples() const {
+  std::vector<std::uint64_t> samples(tiles_.size());
+  for (const Tile& tile : tiles_) samples[row_major(tile)] = samples_before_[tile.next_block];
+  return samples;
 }
 
 double TilePlan::cost_of_sample(const Tile& tile) const {
@@ -70,7 +128,7 @@ std::size_t TilePlan::pick_pass_end(const Tile& tile) const {
   // The first block of all tiles comes first, and as long as nothing is known, one at a time.
   if (first == 0 || cost <= 0.0) return end;
   const std::uint64_t pixels = tile.rect.pixels();
-  while (end < blocks() && pixels * (end + 1 - first) <= length_.max_pixel_blocks &&
+  while (end < end_of(tile) && pixels * (end + 1 - first) <= length_.max_pixel_blocks &&
          static_cast<double>(pixels * samples_in(first, end + 1)) * cost <=
              length_.target_seconds) {
     ++end;
@@ -166,9 +224,9 @@ void TilePlan::end_band(const WorkItem::Part& part) {
   if (tile.bands_in_flight > 0 || tile.next_row < tile.rect.y1) return;
   if (tile.next_block == 0) ++tiles_started_;
   tile.next_block = tile.pass_end;
-  if (tile.next_block == blocks()) {
+  if (tile.next_block == tile.end_block) {
     ++tiles_done_;
-  } else {
+  } else if (!closed_ && tile.next_block < limit_) {
     ready_.emplace(tile.next_block, part.tile);
   }
 }

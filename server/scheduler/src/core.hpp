@@ -30,7 +30,7 @@ struct LiveJob {
   ReadyScene scene;
   render::RenderSettings settings;
   std::vector<render::SampleBlock> blocks;
-  std::optional<render::Film> film;
+  std::shared_ptr<render::Film> film;  ///< shared with what stores it, once nothing is merged any more
   std::optional<TilePlan> plan;
   std::stop_source stop;
   int in_flight = 0;
@@ -40,6 +40,9 @@ struct LiveJob {
   bool new_samples = false;        ///< since the last revision
   bool publish_planned = false;
   SteadyTime published_at{};
+
+  // The error of the picture.
+  double measure_at = 0.0;  ///< render seconds from which it is judged anew
 
   // On its way to a final state.
   std::optional<JobEvent> ending{};
@@ -105,7 +108,16 @@ class Scheduler::Core {
   void task_failed(LiveJob& job, const TileOutcome& outcome);
   void begin_ending(LiveJob& job, JobEvent event, std::optional<Error> error);
   void archive_if_drained(LiveJob& job);
-  void archived(const JobId& id, const Status& saved, JobImagePtr image);
+  void archived(const JobId& id, const Status& saved, JobImagePtr image,
+                std::optional<PictureError> error);
+
+  // core_accuracy.cpp
+  void begin_stops(LiveJob& job);
+  void time_is_up(const JobId& id);
+  void rest(LiveJob& job);
+  void finish(LiveJob& job, DoneBy by);
+  void measure_if_due(LiveJob& job);
+  void note_error(LiveJob& job, PictureError error);
 
   // core_publish.cpp
   void transition(LiveJob& job, JobEvent event, std::optional<Error> error = std::nullopt);

@@ -61,7 +61,10 @@ void Scheduler::Core::restore() {
     if (runs_again) {
       job.snapshot.started.reset();
       job.snapshot.statistics = {};
+      job.snapshot.accuracy.reset();
+      job.snapshot.curve.clear();
       job.snapshot.progress.samples_done = 0;
+      job.snapshot.progress.stop_fraction = 0.0;
       job.snapshot.progress.tiles_started = job.snapshot.progress.tiles_done = 0;
       job.snapshot.progress.samples_per_pixel = 0.0;
       job.snapshot.elapsed_seconds = 0.0;

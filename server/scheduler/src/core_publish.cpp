@@ -35,6 +35,10 @@ void Scheduler::Core::refresh(LiveJob& job) {
     s.progress.samples_per_pixel = static_cast<double>(s.progress.samples_done) /
                                    (double{1} * s.request.width * s.request.height);
   }
+  if (!job.ending && s.request.stop.seconds) {
+    s.progress.stop_fraction = std::max(s.progress.stop_fraction,
+                                        std::min(0.99, s.statistics.render_seconds / *s.request.stop.seconds));
+  }
   const double fraction = s.progress.fraction();
   if (s.state == JobState::kRendering && fraction > 0.0) {
     s.remaining_seconds = s.statistics.render_seconds * (1.0 - fraction) / fraction;
@@ -126,6 +130,7 @@ void Scheduler::Core::publish_soon(LiveJob& job) {
     if (late == nullptr) return;
     late->publish_planned = false;
     if (late->ending || halted_) return;
+    measure_if_due(*late);
     ++late->snapshot.revision;
     if (std::exchange(late->new_samples, false)) {
       late->snapshot.image_revision = late->snapshot.revision;

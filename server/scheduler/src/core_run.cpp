@@ -4,6 +4,7 @@
 #include <new>
 
 #include "core.hpp"
+#include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/tile_counts.hpp"
 
@@ -112,7 +113,7 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
   job.scene = std::move(scene);
   job.blocks = render::blocks_for(s.request.stop.samples);
-  job.film.emplace(s.request.width, s.request.height);
+  job.film = std::make_shared<render::Film>(s.request.width, s.request.height);
   job.plan.emplace(s.request.width, s.request.height, s.request.tile, samples_of(job.blocks),
                    task_length(config_.scheduler));
   job.render_since = parts_.clock.steady();
@@ -120,6 +121,7 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   s.prepare = {};
   transition(job, JobEvent::kPrepared);
   shares_.join(s.id, s.request.priority);
+  begin_stops(job);
 }
 
 /// Keeps as many tasks waiting as run, so that no worker waits for this strand.
@@ -197,8 +199,8 @@ void Scheduler::Core::merge_outcome(LiveJob& job, const TileOutcome& outcome) {
   task_seconds_.observe(outcome.seconds);
   job.new_samples = true;
   statistics.merge_seconds += seconds_between(begin, parts_.clock.steady());
-  if (!job.plan->done()) return publish_soon(job);
-  begin_ending(job, JobEvent::kRendered, std::nullopt);
+  if (job.plan->at_rest()) return rest(job);
+  publish_soon(job);
 }
 
 void Scheduler::Core::task_failed(LiveJob& job, const TileOutcome& outcome) {
@@ -241,23 +243,29 @@ void Scheduler::Core::archive_if_drained(LiveJob& job) {
   if (job.in_flight > 0 || job.archiving) return;
   job.archiving = true;
   const JobId id = job.snapshot.id;
-  if (job.snapshot.progress.samples_done == 0) return archived(id, success(), nullptr);
+  if (job.snapshot.progress.samples_done == 0) return archived(id, success(), nullptr, std::nullopt);
   JobImagePtr image = resolve(job);
-  disk_.post([this, id, image] {
+  // Nothing is merged any more: the film is read, and its error judged, where it holds up nobody.
+  disk_.post([this, id, image, film = std::shared_ptr<const render::Film>(job.film),
+              samples_area = job.snapshot.request.pixel_mode == PixelMode::kRandom] {
     Status saved = success();
+    std::optional<PictureError> error;
     try {
+      error = judge_picture(*film, samples_area);
       const auto& picture = image->image;
       saved = parts_.store.put_image(id, {picture.width, picture.height, picture.rgb});
     } catch (const std::exception& fault) {
       saved = Error{ErrorKind::kInternal, "internal", fault.what(), ""};
     }
-    post([this, id, saved, image] { archived(id, saved, image); });
+    post([this, id, saved, image, error] { archived(id, saved, image, error); });
   });
 }
 
-void Scheduler::Core::archived(const JobId& id, const Status& saved, JobImagePtr image) {
+void Scheduler::Core::archived(const JobId& id, const Status& saved, JobImagePtr image,
+                               std::optional<PictureError> found) {
   LiveJob* job = find(id);
   if (job == nullptr) return;
+  if (found) note_error(*job, std::move(*found));
   JobEvent event = *job->ending;
   auto error = std::move(job->ending_error);
   if (!saved) {

@@ -126,6 +126,65 @@ TEST(TilePlanProperty, AbandonedPlansGiveAndTakeNothing) {
   EXPECT_EQ(plan.samples_done(), 0U);
 }
 
+/// Takes and merges until nothing is left to hand out.
+void work_off(TilePlan& plan) {
+  while (auto item = plan.next()) {
+    ASSERT_TRUE(plan.merged(*item, 0.02));
+  }
+}
+
+TEST(TilePlanProperty, ALimitHoldsAllTilesAtOneBorder) {
+  TilePlan plan(100, 70, 32, {1, 1, 2, 4, 8, 16, 16, 16, 16}, TaskLength{});
+  plan.set_limit(plan.blocks_for(5));
+  for (const std::uint64_t samples : {8U, 16U, 48U}) {
+    work_off(plan);
+    EXPECT_TRUE(plan.at_rest());
+    EXPECT_FALSE(plan.done());
+    for (const std::uint64_t n : plan.tile_samples()) EXPECT_EQ(n, samples);
+    plan.set_limit(plan.blocks_for(samples == 8 ? 9 : 33));
+  }
+  plan.set_limit(plan.blocks_for(1'000'000));
+  work_off(plan);
+  EXPECT_TRUE(plan.done());
+}
+
+TEST(TilePlanProperty, AClosedPlanEndsEveryTileAtABorder) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    TilePlan plan(300, 200, 64, std::vector<std::uint32_t>(50, 16), TaskLength{});
+    std::vector<WorkItem> flying;
+    for (unsigned step = 0; step < 40 * seed; ++step) {
+      if (flying.size() < 5) {
+        if (auto item = plan.next()) flying.push_back(std::move(*item));
+      }
+      const std::size_t i = random() % flying.size();
+      ASSERT_TRUE(plan.merged(flying[i], 0.2));
+      flying.erase(flying.begin() + static_cast<std::ptrdiff_t>(i));
+      if (flying.empty()) flying.push_back(*plan.next());
+    }
+    plan.close();
+    for (const WorkItem& item : flying) ASSERT_TRUE(plan.merged(item, 0.2));
+    work_off(plan);
+    ASSERT_TRUE(plan.at_rest());
+    std::uint64_t samples = 0;
+    const auto tiles = cut_tiles(300, 200, 64);
+    const auto counts = plan.tile_samples();
+    for (const TileRect& r : tiles) {
+      const auto at = static_cast<std::size_t>(r.y0 / 64 * 5 + r.x0 / 64);
+      EXPECT_EQ(counts[at] % 16, 0U);
+      samples += counts[at] * r.pixels();
+    }
+    EXPECT_EQ(samples, plan.samples_done()) << "no pass is half merged";
+
+    TilePlan again(300, 200, 64, std::vector<std::uint32_t>(50, 16), TaskLength{});
+    again.set_tile_samples(counts);
+    work_off(again);
+    EXPECT_TRUE(again.done());
+    EXPECT_EQ(again.tile_samples(), counts);
+    EXPECT_EQ(again.samples_done(), again.samples_target());
+  }
+}
+
 TEST(TilePlanProperty, TilesCoverTheFilmOnceCentreFirst) {
   const auto tiles = cut_tiles(130, 70, 32);
   std::vector<int> seen(130 * 70);

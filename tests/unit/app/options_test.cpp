@@ -37,6 +37,23 @@ TEST(DaemonOptions, RefusesNonsense) {
   EXPECT_EQ(daemon({"--cache-bytes", "512MB"}).options.config.workers.scene_cache_bytes, 512U << 20U);
 }
 
+TEST(CliOptions, ReadsStops) {
+  const auto stop_of = [](std::vector<const char*> more) {
+    std::vector<const char*> all{"render", "a.obj", "-o", "a.png"};
+    all.insert(all.end(), more.begin(), more.end());
+    return cli(all).options.picture.request.stop;
+  };
+  EXPECT_EQ(stop_of({}).samples, 64U);
+  EXPECT_EQ(stop_of({"--seconds", "2.5"}).samples, JobLimits{}.max_samples);
+  EXPECT_EQ(stop_of({"--seconds", "2.5"}).seconds, 2.5);
+  EXPECT_EQ(stop_of({"--seconds", "2.5", "--samples", "9"}).samples, 9U);
+  EXPECT_DOUBLE_EQ(*stop_of({"--error", "2%"}).error, 0.02);
+  EXPECT_DOUBLE_EQ(*stop_of({"--error", "0.5"}).error, 0.5);
+  EXPECT_EQ(stop_of({"--error", "2%"}).seconds, kDefaultErrorSeconds);
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--error", "little"}).exit_code, 2);
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--seconds", "0"}).exit_code, 2);
+}
+
 TEST(CliOptions, ReadsRender) {
   const auto parsed = cli({"render", "a.obj", "-o", "a.exr", "-o", "a.png", "--size", "320x200", "--samples", "7",
                            "--camera", "2", "--threads", "3"});

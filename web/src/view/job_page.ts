@@ -2,7 +2,7 @@
 
 import { image_url } from "../api";
 import { is_final, job_title, type Job } from "../contract";
-import { count, duration, label_of, percent, ray_rate, si, statistic, stops } from "../format";
+import { count, duration, error_percent, label_of, percent, ray_rate, si, statistic, stops } from "../format";
 import { remedy_of } from "../problem";
 import { since_heard, type State } from "../state";
 import type { Commands } from "./commands";
@@ -218,7 +218,10 @@ function figures(state: State, job: Job): [string, string][] {
   }
   const { samples_done, samples_target, tiles_done, tiles_total } = job.progress;
   const done = samples_done >= 10 || Number.isInteger(samples_done) ? count(samples_done) : samples_done.toFixed(1);
-  rows.push(["Samples", `${done} / ${count(samples_target)}`]);
+  const { error, seconds } = job.request.stop;
+  const bounded = error === undefined && seconds === undefined;
+  rows.push(["Samples", bounded ? `${done} / ${count(samples_target)}` : done]);
+  rows.push(...accuracy_rows(job));
   rows.push(["Tiles done", `${count(tiles_done)} / ${count(tiles_total)}`]);
   const rate = job.statistics["rays_per_second"];
   rows.push(["Speed", ray_rate(typeof rate === "number" && rate > 0 ? rate : null)]);
@@ -226,6 +229,32 @@ function figures(state: State, job: Job): [string, string][] {
   rows.push(["Rays", si(typeof rays === "number" ? rays : null)]);
   return rows;
 }
+
+const kStopNames = { samples: "samples", seconds: "the time limit", error: "the error target" };
+
+function accuracy_rows(job: Job): [string, string][] {
+  const accuracy = job.accuracy;
+  if (!accuracy) return [];
+  const rows: [string, string][] = [];
+  const figure = accuracy.error;
+  rows.push(["Error", figure ? `${error_percent(figure.value)} (${error_percent(figure.low)} to ${error_percent(figure.high)})` : "unknown"]);
+  if (accuracy.target !== null) {
+    const reached = accuracy.target_reached ? "reached" : is_final(job.state) ? "not reached" : "not yet";
+    rows.push(["Target", `${error_percent(accuracy.target)}, ${reached}`]);
+  }
+  if (accuracy.notices.length > 0) rows.push(["Mind", accuracy.notices.map((code) => kNotices[code] ?? label_of(code)).join("; ")]);
+  if (job.done_by) rows.push(["Ended by", kStopNames[job.done_by]]);
+  return rows;
+}
+
+const kNotices: Record<string, string> = {
+  heavy_tailed: "rare bright samples: the error is larger than shown",
+  no_variance: "no two samples differ: no noise, or light that was never found",
+  error_rough: "fewer than 64 samples: intervals may be too narrow",
+  error_unknown: "too few samples to judge",
+  unsampled_pixels: "some pixels have no sample",
+  aliasing_not_measured: "aliasing is not measured",
+};
 
 const kElsewhere = ["rays_per_second", "rays"];
 
@@ -247,7 +276,10 @@ function replay_rows(job: Job): [string, string][] {
 
 function setting_rows(job: Job): [string, string][] {
   const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, ...rest } = job.request;
-  const rows: [string, string][] = [["Samples", count(stop.samples)]];
+  const rows: [string, string][] = [];
+  if (stop.samples !== undefined) rows.push(["Samples at most", count(stop.samples)]);
+  if (stop.error !== undefined) rows.push(["Error target", error_percent(stop.error)]);
+  if (stop.seconds !== undefined) rows.push(["Time limit", duration(stop.seconds)]);
   rows.push(["Camera", typeof camera === "object" ? "own" : String(camera ?? 0)]);
   for (const [key, value] of Object.entries(overrides ?? {})) rows.push([label_of(key), statistic(key, value)]);
   for (const [key, value] of Object.entries(rest)) rows.push([label_of(key), statistic(key === "seed" ? "" : key, value)]);

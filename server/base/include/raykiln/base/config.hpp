@@ -16,6 +16,7 @@ inline constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 struct JobLimits {
   int max_side = 16'384;                        ///< pixels
   std::uint64_t max_samples = 1'048'576;        ///< a pixel
+  double max_seconds = 604'800.0;               ///< of a time stop
   int max_depth = 1'024;                        ///< reflections after the first hit
   int max_branches = 16;
   std::uint64_t max_branch_paths = 65'536;      ///< branches ^ max_depth, a sample

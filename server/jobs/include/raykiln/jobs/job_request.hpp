@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "raykiln/base/config.hpp"
 #include "raykiln/base/result.hpp"
@@ -17,9 +18,17 @@ namespace raykiln::server {
 enum class PixelMode { kRandom, kCentre };
 enum class DirectionSampling { kBsdf, kUniformSphere };
 
+/// When a picture is done: whichever comes first.
 struct StopRule {
-  std::uint64_t samples = 64;  ///< a pixel
+  std::uint64_t samples = 64;        ///< a pixel
+  std::optional<double> seconds{};   ///< wall time in `rendering`
+  std::optional<double> error{};     ///< upper end of the 95 % interval of `error`; 0.02 is 2 %
+  /// Samples a pixel of each tile, row by row: what a job that ended early needs to be made again.
+  std::vector<std::uint64_t> tile_samples{};
 };
+
+/// `seconds` of a job that names an error alone, so that a target out of reach ends too.
+inline constexpr double kDefaultErrorSeconds = 3600.0;
 
 /// A pinhole of the user's own, world space in metres.
 struct OwnCamera {

@@ -1,6 +1,7 @@
 // All that can be said about a job at one revision: an immutable value.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "raykiln/base/result.hpp"
 #include "raykiln/jobs/job_request.hpp"
 #include "raykiln/jobs/job_state.hpp"
+#include "raykiln/jobs/picture_error.hpp"
 
 namespace raykiln::server {
 
@@ -31,10 +33,12 @@ struct RenderProgress {
   int tiles = 0;                     ///< of the film
   int tiles_started = 0;             ///< with at least one sample in every pixel
   int tiles_done = 0;                ///< with all samples
+  double stop_fraction = 0.0;        ///< of the way to a stop by seconds or error; 1 when it has come
   [[nodiscard]] double fraction() const {
     return samples_target == 0
                ? 0.0
-               : static_cast<double>(samples_done) / static_cast<double>(samples_target);
+               : std::max(stop_fraction,
+                          static_cast<double>(samples_done) / static_cast<double>(samples_target));
   }
 };
 
@@ -59,6 +63,7 @@ struct JobStatistics {
   double idle_seconds = 0.0;     ///< of workers while this job had work to do
   double merge_seconds = 0.0;
   double publish_seconds = 0.0;  ///< snapshots, resolving and storing pictures
+  double accuracy_seconds = 0.0;  ///< judging the error of the picture while it is rendered
   std::uint64_t tasks = 0, retried_tasks = 0;
   std::uint64_t paths = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
@@ -77,10 +82,10 @@ struct JobStatistics {
   [[nodiscard]] double rays_per_second() const {
     return render_seconds > 0.0 ? static_cast<double>(rays()) / render_seconds : 0.0;
   }
-  /// (idle + merge + publish) / worker time.
+  /// (idle + merge + publish + accuracy) / worker time.
   [[nodiscard]] double overhead_fraction() const {
     return worker_seconds > 0.0
-               ? (idle_seconds + merge_seconds + publish_seconds) / worker_seconds
+               ? (idle_seconds + merge_seconds + publish_seconds + accuracy_seconds) / worker_seconds
                : 0.0;
   }
 };
@@ -101,6 +106,10 @@ struct JobSnapshot {
   double elapsed_seconds = 0.0;                 ///< since it left the queue
   std::optional<double> remaining_seconds{};    ///< estimate; while rendering
   JobStatistics statistics;
+  std::optional<PictureError> accuracy{};      ///< as last judged; nothing before
+  DoneBy done_by = DoneBy::kNone;              ///< what ended it; completed jobs
+  std::vector<CurvePoint> curve;               ///< error against time; at most kMostCurvePoints
+  std::vector<std::uint64_t> tile_samples;     ///< where tiles differ in the end; else empty
   std::vector<JobWarning> warnings;            ///< of the scene, and of this job
   std::optional<Error> error{};                 ///< when failed
 };

@@ -52,6 +52,24 @@ class TilePlan {
   TilePlan(int width, int height, int tile, const std::vector<std::uint32_t>& block_samples,
            const TaskLength& length);
 
+  /// Blocks from this index on are not handed out until a later call raises the limit. Must not fall
+  /// below what has been handed out.
+  void set_limit(std::size_t end_block);
+  /// Each tile ends at the last border of a block at or below its number of samples (one a tile, row by
+  /// row from the top left). Before the first next().
+  void set_tile_samples(const std::vector<std::uint64_t>& samples);
+  /// No tile starts another pass; those that have begun are handed out to their end.
+  void close();
+  /// Nothing is in flight and nothing can be handed out: all is done, the limit is reached, or the plan
+  /// is closed. Every tile is at the border of a block.
+  [[nodiscard]] bool at_rest() const { return flights_.empty() && !has_work(); }
+  [[nodiscard]] bool closed() const { return closed_; }
+  /// Blocks that hold at least so many samples, all of them at most.
+  [[nodiscard]] std::size_t blocks_for(std::uint64_t samples) const;
+  [[nodiscard]] std::size_t limit() const { return limit_; }
+  /// Samples a pixel in each tile, row by row from the top left; whole passes only.
+  [[nodiscard]] std::vector<std::uint64_t> tile_samples() const;
+
   /// Next item, or nothing while all that is left is in flight.
   [[nodiscard]] std::optional<WorkItem> next();
 
@@ -85,6 +103,7 @@ class TilePlan {
   struct Tile {
     TileRect rect;
     std::size_t next_block = 0;  ///< first block that is not merged
+    std::size_t end_block = 0;   ///< end of the tile's blocks
     std::size_t pass_end = 0;    ///< end of the pass that is being handed out; next_block: none is
     int next_row = 0;            ///< first row of that pass not handed out
     int bands_in_flight = 0;
@@ -94,6 +113,8 @@ class TilePlan {
     return samples_before_[end] - samples_before_[first];
   }
   [[nodiscard]] std::size_t blocks() const { return samples_before_.size() - 1; }
+  [[nodiscard]] std::size_t end_of(const Tile& tile) const;
+  [[nodiscard]] std::size_t row_major(const Tile& tile) const;
   [[nodiscard]] double cost_of_sample(const Tile& tile) const;
   [[nodiscard]] double part_seconds(const WorkItem& item, const WorkItem::Part& part) const;
   [[nodiscard]] std::size_t pick_pass_end(const Tile& tile) const;
@@ -106,6 +127,9 @@ class TilePlan {
 
   std::vector<std::uint64_t> samples_before_;  ///< [b]: samples of all blocks before b
   TaskLength length_;
+  int tile_side_, tiles_across_;
+  std::size_t limit_ = 0;
+  bool closed_ = false;
   std::vector<Tile> tiles_;
   std::set<std::pair<std::size_t, std::size_t>> ready_;  ///< (next block, tile) with rows to give
   std::vector<WorkItem> again_;

@@ -1,0 +1,12 @@
+// From the renderer's error figures to what a job keeps of them.
+#pragma once
+
+#include "raykiln/image/film.hpp"
+#include "raykiln/jobs/picture_error.hpp"
+
+namespace raykiln::server {
+
+/// `samples_area`: the pixel mode samples the area of pixels, so that aliasing is part of the error.
+[[nodiscard]] PictureError judge_picture(const render::Film& film, bool samples_area);
+
+}  // namespace raykiln::server

@@ -1,0 +1,98 @@
+// The error of pictures while they are rendered, and the stops that depend on error and time.
+#include <algorithm>
+#include <cmath>
+
+#include "core.hpp"
+#include "raykiln/scheduler/judge_picture.hpp"
+
+namespace raykiln::server {
+namespace {
+
+/// Judging costs at most this part of the time between two looks.
+constexpr double kShareOfTime = 0.01;
+/// Looks follow at least so far apart, as a ratio of render seconds.
+constexpr double kStep = 1.1;
+/// Larger films are judged at decisions and in the end only: one look would hold up this strand.
+constexpr std::uint64_t kMostLivePixels = 4'000'000;
+
+bool samples_area(const JobSnapshot& job) { return job.request.pixel_mode == PixelMode::kRandom; }
+
+}  // namespace
+
+void Scheduler::Core::begin_stops(LiveJob& job) {
+  const StopRule& stop = job.snapshot.request.stop;
+  if (!stop.tile_samples.empty()) job.plan->set_tile_samples(stop.tile_samples);
+  if (stop.error) job.plan->set_limit(job.plan->blocks_for(kErrorFloor));
+  if (stop.seconds) {
+    const JobId id = job.snapshot.id;
+    const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000.0 * *stop.seconds)));
+    strand_->post_after(wait, [this, id] { time_is_up(id); });
+  }
+  if (job.plan->at_rest()) rest(job);
+}
+
+/// What has begun goes on to the border of a block: at most one pass of each tile in flight.
+void Scheduler::Core::time_is_up(const JobId& id) {
+  LiveJob* job = find(id);
+  if (job == nullptr || !job->plan || job->ending || halted_) return;
+  job->plan->close();
+  if (job->plan->at_rest()) rest(*job);
+}
+
+/// Nothing of the job is in flight and nothing can be handed out: every pixel of a tile is at the
+/// same border of a block. What is decided here depends on merged samples alone.
+void Scheduler::Core::rest(LiveJob& job) {
+  if (job.plan->done()) return finish(job, DoneBy::kSamples);
+  if (job.plan->closed()) return finish(job, DoneBy::kSeconds);
+  const SteadyTime begin = parts_.clock.steady();
+  refresh(job);
+  note_error(job, judge_picture(*job.film, samples_area(job.snapshot)));
+  job.snapshot.statistics.accuracy_seconds += seconds_between(begin, parts_.clock.steady());
+  if (target_met(job.snapshot.request.stop, *job.snapshot.accuracy)) {
+    return finish(job, DoneBy::kError);
+  }
+  const render::SampleBlock& last = job.blocks[job.plan->limit() - 1];
+  job.plan->set_limit(job.plan->blocks_for(next_decision(last.first + last.count)));
+  publish_soon(job);
+}
+
+void Scheduler::Core::finish(LiveJob& job, DoneBy by) {
+  JobSnapshot& s = job.snapshot;
+  s.done_by = by;
+  s.progress.stop_fraction = 1.0;
+  auto samples = job.plan->tile_samples();
+  const bool even = std::all_of(samples.begin(), samples.end(), [&](std::uint64_t n) { return n == samples[0]; });
+  if (by == DoneBy::kSeconds && !even) s.tile_samples = std::move(samples);
+  begin_ending(job, JobEvent::kRendered, std::nullopt);
+}
+
+void Scheduler::Core::measure_if_due(LiveJob& job) {
+  JobSnapshot& s = job.snapshot;
+  if (!job.plan || job.ending || !job.new_samples) return;
+  refresh(job);
+  const double now = s.statistics.render_seconds;
+  const bool whole = s.progress.tiles_started == s.progress.tiles && s.progress.samples_per_pixel >= 2.0;
+  const auto pixels = static_cast<std::uint64_t>(s.request.width) * static_cast<std::uint64_t>(s.request.height);
+  if (!whole || now < job.measure_at || pixels > kMostLivePixels) return;
+  const SteadyTime begin = parts_.clock.steady();
+  note_error(job, judge_picture(*job.film, samples_area(s)));
+  const double cost = seconds_between(begin, parts_.clock.steady());
+  s.statistics.accuracy_seconds += cost;
+  job.measure_at = std::max(kStep * now, now + cost / kShareOfTime);
+}
+
+void Scheduler::Core::note_error(LiveJob& job, PictureError error) {
+  JobSnapshot& s = job.snapshot;
+  if (error.known()) {
+    add_point(s.curve, {.render_seconds = s.statistics.render_seconds,
+                        .worker_seconds = s.statistics.worker_seconds,
+                        .samples = error.mean_samples,
+                        .rays = s.statistics.rays(),
+                        .error = error.error});
+    s.progress.stop_fraction =
+        std::max(s.progress.stop_fraction, target_fraction(s.request.stop, error));
+  }
+  s.accuracy = std::move(error);
+}
+
+}  // namespace raykiln::server

@@ -1,0 +1,100 @@
+// What ends a job: samples, time or error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/server_rig.hpp"
+#include "support/temp_directory.hpp"
+
+namespace raykiln::tests {
+namespace {
+
+using namespace server;
+
+struct Ended {
+  JobSnapshot job;
+  std::vector<float> rgb;
+};
+
+Ended run(int threads, const std::function<void(JobRequest&)>& change) {
+  const TempDirectory directory;
+  ServerRig rig(directory.path(), threads);
+  JobRequest request = small_job(rig.add_scene("a room")->scene.record.id);
+  change(request);
+  const auto submitted = rig.submit(request);
+  EXPECT_TRUE(submitted) << submitted.error().message;
+  Ended ended{rig.wait_final(submitted->job.id), {}};
+  EXPECT_EQ(ended.job.state, JobState::kCompleted);
+  ended.rgb = (*rig.image(submitted->job.id))->image.rgb;
+  return ended;
+}
+
+TEST(Stops, ByErrorHoldTheTargetAndDoNotDependOnThreads) {
+  const auto by_error = [](JobRequest& r) {
+    r.stop.samples = 100'000;
+    r.stop.error = 0.02;
+    r.width = r.height = 48;
+    r.tile = 16;
+  };
+  const Ended one = run(1, by_error), many = run(5, by_error);
+  ASSERT_TRUE(one.job.accuracy);
+  EXPECT_EQ(one.job.done_by, DoneBy::kError);
+  EXPECT_LE(one.job.accuracy->error.high, 0.02);
+  EXPECT_GT(one.job.accuracy->error.value, 0.012) << "stopped much too late";
+  EXPECT_GE(one.job.accuracy->least_samples, kErrorFloor);
+  EXPECT_DOUBLE_EQ(one.job.progress.fraction(), 1.0);
+  EXPECT_FALSE(one.job.curve.empty());
+  EXPECT_EQ(many.job.accuracy->least_samples, one.job.accuracy->least_samples);
+  EXPECT_EQ(many.job.accuracy->error.value, one.job.accuracy->error.value);
+  EXPECT_EQ(many.rgb, one.rgb);
+  const Ended stated = run(2, [&](JobRequest& r) {
+    by_error(r);
+    r.stop = {.samples = one.job.accuracy->least_samples};
+  });
+  EXPECT_EQ(stated.job.done_by, DoneBy::kSamples);
+  EXPECT_EQ(stated.rgb, one.rgb);
+}
+
+TEST(Stops, ByTimeEndAtBordersAndAreMadeAgainFromTheirSamples) {
+  const Ended timed = run(3, [](JobRequest& r) {
+    r.stop.samples = 1'000'000;
+    r.stop.seconds = 0.3;
+    r.tile = 8;
+  });
+  EXPECT_EQ(timed.job.done_by, DoneBy::kSeconds);
+  EXPECT_GE(timed.job.statistics.render_seconds, 0.3);
+  EXPECT_DOUBLE_EQ(timed.job.progress.fraction(), 1.0);
+  std::vector<std::uint64_t> samples = timed.job.tile_samples;
+  if (samples.empty()) samples.assign(96, static_cast<std::uint64_t>(timed.job.progress.samples_per_pixel));
+  ASSERT_EQ(samples.size(), 96U);
+  const Ended again = run(1, [&](JobRequest& r) {
+    r.tile = 8;
+    r.stop.samples = *std::max_element(samples.begin(), samples.end());
+    r.stop.tile_samples = samples;
+  });
+  EXPECT_EQ(again.rgb, timed.rgb);
+  EXPECT_EQ(again.job.progress.samples_done, timed.job.progress.samples_done);
+}
+
+TEST(Stops, ATargetOutOfReachEndsByTimeAndSaysSo) {
+  const Ended ended = run(2, [](JobRequest& r) {
+    r.stop.samples = 1'000'000;
+    r.stop.seconds = 0.4;
+    r.stop.error = 0.0001;
+  });
+  EXPECT_EQ(ended.job.done_by, DoneBy::kSeconds);
+  EXPECT_FALSE(target_met(ended.job.request.stop, *ended.job.accuracy));
+}
+
+TEST(Stops, EveryJobKnowsItsError) {
+  const Ended ended = run(2, [](JobRequest& r) { r.stop.samples = 64; });
+  ASSERT_TRUE(ended.job.accuracy);
+  EXPECT_EQ(ended.job.accuracy->grade, "measured");
+  EXPECT_GT(ended.job.accuracy->error.value, 0.0);
+  ASSERT_FALSE(ended.job.curve.empty());
+  EXPECT_EQ(ended.job.curve.back().samples, 64.0);
+  EXPECT_EQ(ended.job.curve.back().rays, ended.job.statistics.rays());
+}
+
+}  // namespace
+}  // namespace raykiln::tests
