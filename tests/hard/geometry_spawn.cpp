@@ -11,6 +11,7 @@
 namespace raykiln::hard {
 namespace {
 
+using render::ray_end;
 using render::ray_origin;
 using render::surface_point;
 using render::SurfacePoint;
@@ -209,7 +210,8 @@ std::uint64_t lit_receivers(const ShadowCase& c, std::uint64_t n, TestRandom& ra
     const SurfacePoint point =
         surface_point(shading, static_cast<std::uint32_t>(i % 2), b.u, b.v);
     const Vec3d wi = render::normalize(Vec3d(light) - point.p);
-    queue.push(ray_origin(point, wi), light, render::Rgbd(1.0), static_cast<std::uint32_t>(i));
+    queue.push(ray_origin(point, wi), light, render::ShadowEnd::kPointLight, render::Rgbd(1.0),
+               static_cast<std::uint32_t>(i));
   }
   queue.flush(*tree, render::Traversal::kTree, results, stats);
   std::uint64_t lit = 0;
@@ -245,6 +247,64 @@ TEST(V07_ShadowEnds, OccludersNearBothEndsAndAWallBehind) {
   row.never("shadow of what is behind", wrongly_dark, free_rays);
   EXPECT_EQ(leaked, 0U);
   EXPECT_EQ(wrongly_dark, 0U);
+}
+
+// Rays from around to points on a pair of triangles, as emitters are asked for; `gap` > 0 puts a larger
+// sheet so far before them. Counts those that get through. Origins have the clearance that the renderer
+// gives them: closer to the plane, it is a matter of rounding on which side they are.
+std::uint64_t lit_from_emitter(const Similarity& place, double distance, double gap, std::uint64_t n,
+                               TestRandom& random) {
+  TestMesh mesh = test::coplanar_grid(1, 2, 0.0F, 1.0F);
+  if (gap > 0.0) mesh.append(test::coplanar_grid(1, 2, static_cast<float>(gap), 4.0F));
+  apply(place, mesh);
+  const auto tree = build(mesh);
+  const auto shading = scene_mesh(mesh);
+  std::vector<render::PathResult> results(n);
+  render::RenderStats stats;
+  render::ShadowQueue queue;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const Barycentrics b = random_barycentrics(random);
+    const SurfacePoint point = surface_point(shading, static_cast<std::uint32_t>(i % 2), b.u, b.v);
+    // Any angle over the sheet, down to 1e-6 of grazing; a sheet before it is met within its borders.
+    const double low = gap > 0.0 ? 0.5 : 1e-6;
+    const double height = std::pow(low, static_cast<double>(random.uniform()));
+    const double turn = 6.283185307179586 * static_cast<double>(random.uniform());
+    const double flat = std::sqrt(1.0 - height * height);
+    const Vec3d towards = flat * std::cos(turn) * place.columns[0] +
+                          flat * std::sin(turn) * place.columns[1] + height * place.columns[2];
+    Vec3f from(point.p + distance * place.scale * towards);
+    const double over = dot(point.ng, Vec3d(from) - point.p);
+    if (std::abs(over) < 4.0 * point.clearance) {
+      from = Vec3f(Vec3d(from) + std::copysign(4.0 * point.clearance, over) * point.ng);
+    }
+    queue.push(from, ray_end(point, Vec3d(from)), render::ShadowEnd::kSurface, render::Rgbd(1.0),
+               static_cast<std::uint32_t>(i));
+  }
+  queue.flush(*tree, render::Traversal::kTree, results, stats);
+  std::uint64_t lit = 0;
+  for (const auto& result : results) lit += result.direct.x == 1.0 ? 1U : 0U;
+  return lit;
+}
+
+TEST(V07_ShadowEnds, EmittersOfAnySizeAndPlace) {
+  Row row("V07", "60 emitters of size 10^U(-4,4), up to 100 sizes off the origin, seen from 0.1 to 1e5 sizes "
+          "under any angle down to 1e-6; or behind a sheet, 1e-5 of the way and 30 clearances before them",
+          "an emitter never blocks itself; the sheet always does");
+  TestRandom random(702);
+  const std::uint64_t n = trials(1'000'000, 10'000'000) / 60;
+  std::uint64_t wrongly_dark = 0, leaked = 0, rays = 0;
+  for (int member = 0; member < 60; ++member) {
+    const Similarity place = random_similarity(random, member % 3 == 0 ? 0.0 : 100.0);
+    const double distance = std::pow(10.0, static_cast<double>(random.uniform(-1.0F, 5.0F)));
+    wrongly_dark += n - lit_from_emitter(place, distance, 0.0, n, random);
+    // Clearance: gamma_7 |p| + gamma_4 of the size, below 1e-4 of it 100 sizes off.
+    leaked += lit_from_emitter(place, distance, 3e-3 + 1e-5 * distance, n, random);
+    rays += n;
+  }
+  row.never("dark by itself", wrongly_dark, rays);
+  row.never("light through the sheet", leaked, rays);
+  EXPECT_EQ(wrongly_dark, 0U);
+  EXPECT_EQ(leaked, 0U);
 }
 
 // ---- V14: concave corners ----

@@ -175,15 +175,22 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-// A glTF of separate triangles with these float bits as positions.
-std::string gltf_text(const std::vector<float>& numbers) {
-  std::string bytes(numbers.size() * 4, '\0');
-  std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  const std::string count = std::to_string(numbers.size() / 3);
+// A glTF of separate triangles with these float bits as positions, and as normals if there are any.
+std::string gltf_text(const std::vector<float>& numbers, const std::vector<float>& normals = {}) {
+  std::string bytes((numbers.size() + normals.size()) * 4, '\0');
+  std::memcpy(bytes.data(), numbers.data(), numbers.size() * 4);
+  if (!normals.empty()) std::memcpy(bytes.data() + numbers.size() * 4, normals.data(), normals.size() * 4);
+  const auto accessor = [](const std::vector<float>& values, std::size_t offset) {
+    return R"({"bufferView":0,"byteOffset":)" + std::to_string(offset) +
+           R"(,"componentType":5126,"count":)" + std::to_string(values.size() / 3) +
+           R"(,"type":"VEC3"})";
+  };
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
-         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-         R"("accessors":[{"bufferView":0,"componentType":5126,"count":)" + count +
-         R"(,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":)" +
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0)" +
+         std::string(normals.empty() ? "" : R"(,"NORMAL":1)") + R"(}}]}],"accessors":[)" +
+         accessor(numbers, 0) +
+         (normals.empty() ? "" : std::string(",").append(accessor(normals, numbers.size() * 4))) +
+         R"(],"bufferViews":[{"buffer":0,"byteLength":)" +
          std::to_string(bytes.size()) + R"(}],"buffers":[{"byteLength":)" +
          std::to_string(bytes.size()) + R"(,"uri":"data:application/octet-stream;base64,)" +
          base64(bytes) + R"("}]})";
@@ -232,6 +239,54 @@ TEST(K07_AbsurdNumbers, GltfRandomBits) {
   EXPECT_GT(taken, 0U);
 }
 
+TEST(K07_AbsurdNumbers, Normals) {
+  Row row("K07", "one NaN, Inf, 3.4e38, 1e-45 or zero vector among the 3000 normals of a 1k mesh (glTF), 300 members; "
+          "NaN, Inf and 1e400 (OBJ)",
+          "not finite: refused with its place; zero: replaced by the triangle's and counted; else made a unit vector");
+  TestRandom random(703);
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  std::uint64_t not_unit = 0, wrong_count = 0, members = 0;
+  Refusals refusals;
+  for (const float bad : {nan, inf, -inf, 3.4e38F, 1e-45F, 0.0F}) {
+    for (int member = 0; member < 50; ++member) {
+      std::vector<float> numbers(9000), normals(9000);
+      for (float& x : numbers) x = random.uniform();
+      for (float& x : normals) x = random.uniform(0.1F, 1.0F);
+      const std::uint32_t target = random.below(9000), corner = target / 3 * 3;
+      if (std::abs(bad) < 1.0F) normals[corner] = normals[corner + 1] = normals[corner + 2] = 0.0F;
+      normals[target] = bad;
+      if (!std::isfinite(bad)) {
+        expect_refused({{"a.gltf", gltf_text(numbers, normals)}}, refusals);
+        continue;
+      }
+      ++members;
+      const auto scene = imported({{"a.gltf", gltf_text(numbers, normals)}});
+      std::uint64_t counted = 0;
+      for (const auto& w : scene.report.warnings) {
+        if (w.code == ImportWarningCode::kInvalidNormal) counted += w.count;
+      }
+      wrong_count += counted == (bad == 0.0F ? 1U : 0U) ? 0U : 1U;
+      for (const auto& corners : scene.scene.mesh.corner_normals) {
+        for (const std::uint32_t id : corners) {
+          if (id == kNoNormal) continue;
+          const double size = length(Vec3d(scene.scene.mesh.normals[id]));
+          not_unit += std::abs(size - 1.0) <= 1e-6 ? 0U : 1U;
+        }
+      }
+    }
+  }
+  for (const char* word : {"nan", "inf", "-inf", "1e400"}) {
+    expect_refused({{"a.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 ").append(word).append(" 1\nf 1//1 2//1 3//1\n")}},
+                   refusals);
+  }
+  row.never("normals in use that are not unit", not_unit, members * 3000);
+  row.never("wrong counts", wrong_count, members);
+  row.never("not finite: accepted or without a place", refusals.accepted + refusals.unnamed, refusals.tried);
+  EXPECT_EQ(not_unit, 0U);
+  EXPECT_EQ(wrong_count, 0U);
+  EXPECT_EQ(refusals.accepted + refusals.unnamed, 0U);
+}
+
 // ---- V08: millimetres at a thousand kilometres ----
 
 // A square of 1 m with a relief of 1 mm.
@@ -268,8 +323,8 @@ TEST(V08_FarAway, DoubleInputKeepsItsDigits) {
 }
 
 TEST(V08_FarAway, SingleInputIsWarnedAbout) {
-  Row row("V08", "the same in single precision (glTF) at 1e6 m: ulp 0.0625 m", "a warning; no NaN",
-          "seed");
+  Row row("V08", "the same in single precision (glTF) at 1e6 m: ulp 0.0625 m",
+          "a warning with the ratio of the shortest edge to the ulp; no NaN", "seed");
   TestRandom random(802);
   const TestMesh mesh = relief(3);
   std::vector<float> numbers;
@@ -280,16 +335,23 @@ TEST(V08_FarAway, SingleInputIsWarnedAbout) {
     }
   }
   const auto scene = imported({{"a.gltf", gltf_text(numbers)}});
-  const auto warned = std::count_if(
-      scene.report.warnings.begin(), scene.report.warnings.end(),
-      [](const ImportWarning& w) { return w.code == ImportWarningCode::kCoarseCoordinates; });
+  std::uint64_t warned = 0;
+  double ratio = 0.0;
+  for (const ImportWarning& w : scene.report.warnings) {
+    if (w.code != ImportWarningCode::kCoarseCoordinates) continue;
+    ++warned;
+    std::sscanf(w.message.c_str() + w.message.find("shortest edge is ") + 17, "%lf", &ratio);
+  }
   RenderSettings settings;
   settings.width = settings.height = 16;
   const auto image = picture(scene.scene, settings, 4);
-  row.measured("warnings", static_cast<std::uint64_t>(warned));
+  row.measured("warnings", warned);
+  row.measured("shortest edge in steps of the coordinates, as warned", ratio);
   row.measured("samples not finite", image.non_finite);
   row.measured("zero-area triangles dropped", scene.report.zero_area_triangles);
-  EXPECT_EQ(warned, 1);
+  EXPECT_EQ(warned, 1U);
+  EXPECT_GT(ratio, 0.0);  // corners that fell into one place differ by their relief alone
+  EXPECT_LT(ratio, 0.1);
   EXPECT_EQ(image.non_finite, 0U);
 }
 

@@ -49,7 +49,7 @@ Scene scaled(Scene scene, int k) {
     light.position *= s;
     light.intensity *= s * s;
   }
-  for (Camera& camera : scene.cameras) camera.eye *= s;
+  for (Camera& camera : scene.cameras) camera.eye *= static_cast<double>(s);
   scene.bounds = {scene.bounds.lo * s, scene.bounds.hi * s};
   return scene;
 }
@@ -293,7 +293,7 @@ Turn about(int axis, double angle) {
 }
 
 Scene moved(Scene scene, const std::vector<Turn>& turns, const Vec3d& shift) {
-  const auto turn = [&](const Vec3f& v) {
+  const auto turn = [&](const auto& v) {
     Vec3d w(v);
     for (const Turn& t : turns) w = turned(t, w);
     return w;
@@ -305,10 +305,10 @@ Scene moved(Scene scene, const std::vector<Turn>& turns, const Vec3d& shift) {
   }
   for (PointLight& light : scene.point_lights) light.position = Vec3f(turn(light.position) + shift);
   for (Camera& c : scene.cameras) {
-    c.eye = Vec3f(turn(c.eye) + shift);
-    c.right = Vec3f(turn(c.right));
-    c.up = Vec3f(turn(c.up));
-    c.forward = Vec3f(turn(c.forward));
+    c.eye = turn(c.eye) + shift;
+    c.right = turn(c.right);
+    c.up = turn(c.up);
+    c.forward = turn(c.forward);
   }
   return scene;
 }

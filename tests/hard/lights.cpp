@@ -133,7 +133,7 @@ TEST(L02, Headlight) {
     SmallScene s;
     s.level_square(static_cast<float>(20.0 * h), 0.0F, s.material(matte(0.8F)));
     s.look({away, 0, h}, {0, 0, 0}, {0, 1, 0}, 1e-6);
-    s.point_light(s.scene().cameras[0].eye, Rgb(10.0F));
+    s.point_light(Vec3f(s.scene().cameras[0].eye), Rgb(10.0F));
     const Measured m = measure(s.scene(), direct_only(1, PixelMode::kCentre), 1);
     const double truth = 0.8 * 10.0 * h / kPi / std::pow(h * h + away * away, 1.5);
     worst = std::max(worst, relative_error(m.mean, truth));

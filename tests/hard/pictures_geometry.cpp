@@ -45,14 +45,12 @@ TEST(K09_EmptyScene, PictureIsTheBackground) {
       different += equal ? 0U : 1U;
     }
     pixels += image.pixels.size();
-    if (member % 3 == 0) rays += image.stats.camera_rays;
+    if (member % 3 != 1) rays += image.stats.camera_rays;  // nothing, or nothing that can be met
   }
   row.never("pixels that differ", different, pixels);
   row.measured("rays counted for the empty scene", rays);
   EXPECT_EQ(different, 0U);
-  // Rays through the empty scene are still shot and counted: 2 pictures of 33 x 33 at 9 samples.
-  EXPECT_LE(rays, 2U * 33U * 33U * 9U);
-  if (rays > 0) row.falls_short();
+  EXPECT_EQ(rays, 0U);
 }
 
 // ---- K13: tiny and huge ----
@@ -60,7 +58,7 @@ TEST(K09_EmptyScene, PictureIsTheBackground) {
 Scene scaled(const Scene& scene, float scale) {
   Scene result = scene;
   for (Vec3f& p : result.mesh.positions) p *= scale;
-  for (Camera& camera : result.cameras) camera.eye *= scale;
+  for (Camera& camera : result.cameras) camera.eye *= static_cast<double>(scale);
   for (PointLight& light : result.point_lights) {
     light.position *= scale;
     light.intensity *= scale * scale;
@@ -98,8 +96,7 @@ Scene sphere_from(double distance, const Vec3d& towards) {
     b.triangle(p[0], p[1], p[2], white);
   }
   b.point_light(Vec3f(3.0 * towards + Vec3d(1.0, 2.0, 0.5)), Rgb(5.0F));
-  b.camera(Vec3f(distance * towards), Vec3f(0.0F), {0.3F, 1.0F, 0.2F},
-           static_cast<float>(2.0 * std::atan(1.2 / distance)));
+  b.camera(distance * towards, Vec3d(0.0), {0.3, 1.0, 0.2}, 2.0 * std::atan(1.2 / distance));
   return b.scene();
 }
 
@@ -191,9 +188,7 @@ TEST(V09_VeryLongRays, PictureFromFarAway) {
   EXPECT_LE(axis4.worst_z, 4.0);
   EXPECT_LE(axis6.worst_z, 4.0);
   EXPECT_LE(oblique4.worst_z, 4.0);
-  // Not kept at 1e6 obliquely: the camera and its directions are float32, whose steps are 0.06 radii
-  // there. The mean holds.
-  row.falls_short();
+  EXPECT_LE(oblique6.worst_z, 4.0);
   EXPECT_NEAR(oblique6.mean_ratio, 1.0, 0.01);
 }
 

@@ -79,7 +79,7 @@ class SceneBuilder {
   }
 
   /// A camera at `eye` that looks at `target`; `up` must not be parallel to that.
-  void camera(const Vec3f& eye, const Vec3f& target, const Vec3f& up, float fov_y_rad) {
+  void camera(const Vec3d& eye, const Vec3d& target, const Vec3d& up, double fov_y_rad) {
     Camera camera;
     camera.eye = eye;
     camera.forward = normalize(target - eye);

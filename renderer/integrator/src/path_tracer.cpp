@@ -20,6 +20,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// What every path brings where there is nothing to meet: no ray is needed.
+void fill_with_background(std::span<PathResult> results, const Rgb& background) {
+  for (PathResult& result : results) result.emitted = Rgbd(background);
+}
+
 /// The widest level of the tree of rays that one start can grow.
 double widest_level(int branches, int max_depth) { return std::pow(branches, max_depth); }
 
@@ -134,6 +139,11 @@ bool PathTracer::trace(std::span<const PathStart> starts, std::span<PathResult> 
   scratch.front.clear();
   scratch.shadows.clear();
   std::fill(results.begin(), results.end(), PathResult{});
+  if (bounds(scene_.tree).empty()) {
+    fill_with_background(results, scene_.scene.background);
+    stats.paths += starts.size();
+    return !stop.stop_requested();
+  }
   Call call{starts, results, stats, stop};
   for (admit(call); scratch.front.size() > 0; admit(call)) {
     scratch.next.clear();

@@ -5,17 +5,26 @@
 namespace raykiln::render {
 namespace {
 
-/// A wall behind the light must not block it, one just before it must: t of a hit is good to about
-/// 3e-7 of itself, so the last 2^-20 of the way is left out. Relative, no absolute length.
-constexpr float kShadowEnd = 1.0F - 0x1p-20F;
+/// The end of a surface's ray is lifted off it: hits at t >= 1 are that surface, hits at t < 1 block.
+constexpr float kBeforeSurface = 1.0F - 0x1p-24F;
+
+/// A point light cannot be lifted off what it lies in. d = light - o is rounded by u |d_i| for each
+/// coordinate (u = 2^-24), which moves the far end of the ray; so a surface of normal n in which the
+/// light lies is met at 1 + e, |e| <= u sum |n_i d_i| / |n.d| + u, the last u for rounding t. That is
+/// 2 u where n is an axis, and at most (1 + 1/sin s) u under an angle s to the surface. 16 u
+/// therefore keep a surface through the light from blocking it under any angle if it lies across an
+/// axis, and down to 3.9 degrees if not; what stands in the way is overlooked only within 16 u =
+/// 9.5e-7 of the distance before the light. Relative to the way, no length of its own.
+constexpr float kBeforePointLight = 1.0F - 16.0F * 0x1p-24F;
 
 }  // namespace
 
-void ShadowQueue::push(const Vec3f& from, const Vec3f& to, const Rgbd& light, std::uint32_t slot) {
+void ShadowQueue::push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const Rgbd& light,
+                       std::uint32_t slot) {
   Ray ray;
   ray.o = from;
   ray.d = to - from;
-  ray.t_max = kShadowEnd;
+  ray.t_max = end == ShadowEnd::kSurface ? kBeforeSurface : kBeforePointLight;
   rays_.push_back(ray);
   waiting_.push_back({light, slot});
 }

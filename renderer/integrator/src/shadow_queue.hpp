@@ -10,6 +10,12 @@
 
 namespace raykiln::render {
 
+/// What a shadow ray runs to.
+enum class ShadowEnd : std::uint8_t {
+  kSurface,     ///< the ray_end() of a point on a surface
+  kPointLight,  ///< the place of a light itself
+};
+
 class ShadowQueue {
  public:
   /// So many rays make a good call and bound the memory, however many lights a scene has.
@@ -17,8 +23,9 @@ class ShadowQueue {
 
   [[nodiscard]] bool full() const { return rays_.size() >= kCapacity; }
 
-  /// A ray from `from` to just before `to`, both already clear of their surfaces.
-  void push(const Vec3f& from, const Vec3f& to, const Rgbd& light, std::uint32_t slot);
+  /// A ray from `from`, which is clear of its surface, to `to`.
+  void push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const Rgbd& light,
+            std::uint32_t slot);
 
   /// Traces the queue and adds the light of unblocked rays to PathResult::direct, in the order in
   /// which they came. Every triangle blocks, glass too.

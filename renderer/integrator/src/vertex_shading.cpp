@@ -83,7 +83,8 @@ class VertexShader {
       const Vec3d wi = way / std::sqrt(distance2);
       const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
       const Rgbd arriving = Rgbd(light.intensity) / distance2;
-      queue(vertex, wi, light.position, state_.throughput * value.f_cos * arriving);
+      queue({ray_origin(vertex.point, wi), light.position, ShadowEnd::kPointLight},
+            state_.throughput * value.f_cos * arriving);
     }
   }
 
@@ -99,7 +100,8 @@ class VertexShader {
     const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
     if (value.f_cos == Rgbd(0.0)) return;
     const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
-    queue(vertex, wi, ray_origin(sample.point, -wi),
+    const Vec3f from = ray_origin(vertex.point, wi);
+    queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface},
           state_.throughput * value.f_cos * sample.radiance * weight);
   }
 
@@ -143,9 +145,13 @@ class VertexShader {
     return vertex.transmits || (height > 0.0) == viewed_from_front;
   }
 
-  void queue(const Vertex& vertex, const Vec3d& wi, const Vec3f& target, const Rgbd& light) {
+  struct ShadowWay {
+    Vec3f from, to;
+    ShadowEnd end;
+  };
+  void queue(const ShadowWay& way, const Rgbd& light) {
     if (light == Rgbd(0.0)) return;
-    sinks_.shadows.push(ray_origin(vertex.point, wi), target, light, state_.slot);
+    sinks_.shadows.push(way.from, way.to, way.end, light, state_.slot);
     if (sinks_.shadows.full()) {
       sinks_.shadows.flush(scene_.tree, settings_.traversal, sinks_.results, sinks_.stats);
       sinks_.stopped = sinks_.stop.stop_requested();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -68,12 +69,29 @@ class Finisher {
     const Vec3d far = glm::max(glm::abs(bounds_.lo), glm::abs(bounds_.hi));
     const Vec3d size = bounds_.hi - bounds_.lo;
     const double largest_side = std::max({size.x, size.y, size.z});
-    const double spacing = std::max({far.x, far.y, far.z}) * 1.2e-7;
+    const double farthest = std::max({far.x, far.y, far.z});
+    if (!(farthest > 0.0)) return;  // one point at the origin
+    const double spacing = std::ldexp(1.0, std::ilogb(farthest) - 23);
     if (!draft_.single_precision || spacing * 1e4 < largest_side) return;
+    char ratio[32];
+    std::snprintf(ratio, sizeof ratio, "%.3g", shortest_edge() / spacing);
     diagnostics_.warn(ImportWarningCode::kCoarseCoordinates,
                       "the scene lies so far from its origin that single-precision coordinates "
-                      "resolve less than 1/10000 of its size",
+                      "resolve less than 1/10000 of its size; its shortest edge is " +
+                          std::string(ratio) + " of their steps long",
                       report_.root_file);
+  }
+
+  // Of those that have a length; in the units of the scaled positions.
+  [[nodiscard]] double shortest_edge() const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const auto& t : draft_.triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double edge = length(draft_.positions[t[(k + 1) % 3]] - draft_.positions[t[k]]);
+        if (edge > 0.0) shortest = std::min(shortest, edge);
+      }
+    }
+    return shortest;
   }
 
   // Unused positions may be anything: they are not looked at, and not kept finite for anybody.
@@ -142,7 +160,7 @@ class Finisher {
     }
     if (invalid_normals_ > 0) {
       diagnostics_.warn(ImportWarningCode::kInvalidNormal,
-                        "normals of length 0 are replaced by those of the triangles",
+                        "normals that are not finite or have no length are replaced by those of the triangles",
                         report_.root_file, "", invalid_normals_);
     }
     if (collapsed > 0) {

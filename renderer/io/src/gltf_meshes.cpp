@@ -37,9 +37,11 @@ std::uint64_t triangle_count(std::uint64_t mode, std::uint64_t corners) {
   return corners < 3 ? 0 : corners - 2;
 }
 
+// Each component by itself: the largest of several is not NaN when a later one is.
 Vec3f unit_or_zero(const Vec3d& n) {
   const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  if (!std::isfinite(largest) || !(largest > 0.0)) return Vec3f(0.0F);
+  const bool finite = std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z);
+  if (!finite || !(largest > 0.0)) return Vec3f(0.0F);
   return Vec3f(normalize(n / largest));
 }
 

@@ -18,7 +18,7 @@ PathSettings path_settings(const RenderSettings& settings) {
 CameraRays camera_rays(const PreparedScene& scene, const RenderSettings& settings) {
   return {settings.own_camera ? *settings.own_camera
                               : scene.scene().cameras[static_cast<std::size_t>(settings.camera)],
-          settings.width, settings.height};
+          settings.width, settings.height, bounds(scene.tree())};
 }
 
 }  // namespace raykiln::render

@@ -33,11 +33,11 @@ std::optional<Camera> make_camera(std::string name, const Vec3d& eye, const Vec3
   const Vec3d right = normalize(side);
   Camera camera;
   camera.name = std::move(name);
-  camera.eye = Vec3f(eye - origin);
-  camera.right = Vec3f(right);
-  camera.up = Vec3f(cross(right, *f));
-  camera.forward = Vec3f(*f);
-  camera.fov_y_rad = static_cast<float>(fov_y_rad);
+  camera.eye = eye - origin;
+  camera.right = right;
+  camera.up = cross(right, *f);
+  camera.forward = *f;
+  camera.fov_y_rad = fov_y_rad;
   return camera;
 }
 

@@ -179,7 +179,7 @@ Outcome same_at_any_scale() {
       light.position *= scale;
       light.intensity *= scale * scale;
     }
-    for (Camera& camera : other.cameras) camera.eye *= scale;
+    for (Camera& camera : other.cameras) camera.eye *= static_cast<double>(scale);
     other.bounds = {other.bounds.lo * scale, other.bounds.hi * scale};
     equal += room_hash(other, small_picture()) == hash ? 1 : 0;
   }

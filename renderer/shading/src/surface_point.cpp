@@ -55,6 +55,14 @@ float round_away(double value, double offset) {
   return static_cast<float>(value);
 }
 
+/// The point away from near edges and at least |height| over the plane, on the side of its sign.
+Vec3f lifted(const SurfacePoint& point, double height) {
+  const Vec3d offset = height * point.ng;
+  const Vec3d moved = point.p + point.inwards + offset;
+  return {round_away(moved.x, offset.x), round_away(moved.y, offset.y),
+          round_away(moved.z, offset.z)};
+}
+
 }  // namespace
 
 // Two errors have to be cleared. The position itself: gamma_7 sum |b_i p_i| per coordinate bounds
@@ -84,11 +92,19 @@ SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u,
 }
 
 Vec3f ray_origin(const SurfacePoint& point, const Vec3d& direction) {
-  const double side = dot(point.ng, direction) < 0.0 ? -1.0 : 1.0;
-  const Vec3d offset = side * point.clearance * point.ng;
-  const Vec3d moved = point.p + point.inwards + offset;
-  return {round_away(moved.x, offset.x), round_away(moved.y, offset.y),
-          round_away(moved.z, offset.z)};
+  return lifted(point, dot(point.ng, direction) < 0.0 ? -point.clearance : point.clearance);
+}
+
+// end - origin is rounded once for each coordinate, by u |end_i - origin_i| at most: over the plane the
+// far end sinks by u sum |n_i| |end_i - origin_i|. It starts from at least twice that (the second
+// covers |end - point| and the roundings here). The triangle test, in double, moves its corners by
+// 12 w of their largest distance from the origin (scalar_walk.hpp), w = 2^-53; 16 stand for it.
+Vec3f ray_end(const SurfacePoint& point, const Vec3d& origin) {
+  const Vec3d way = abs(point.p + point.inwards - origin);
+  const double sinks =
+      2.0 * kFloatUnit * dot(abs(point.ng), way) + 16.0 * 0x1p-53 * largest_component(way);
+  const double height = point.clearance + sinks;
+  return lifted(point, dot(point.ng, origin - point.p) < 0.0 ? -height : height);
 }
 
 }  // namespace raykiln::render

@@ -19,11 +19,11 @@ render::Camera camera_of(const OwnCamera& own, const render::Scene& scene) {
       render::normalize(render::cross(forward, render::normalize(vec(own.up))));
   render::Camera camera;
   camera.name = "own";
-  camera.eye = render::Vec3f(vec(own.eye) - scene.origin);
-  camera.right = render::Vec3f(right);
-  camera.up = render::Vec3f(render::cross(right, forward));
-  camera.forward = render::Vec3f(forward);
-  camera.fov_y_rad = static_cast<float>(own.fov_deg * std::numbers::pi / 180.0);
+  camera.eye = vec(own.eye) - scene.origin;
+  camera.right = right;
+  camera.up = render::cross(right, forward);
+  camera.forward = forward;
+  camera.fov_y_rad = own.fov_deg * std::numbers::pi / 180.0;
   return camera;
 }
 

@@ -236,6 +236,8 @@ int run(const Options& options) {
     report.add("triangles", static_cast<std::uint64_t>(options.triangles))
         .add("rays_per_call", static_cast<std::uint64_t>(options.stream))
         .add("leaf_width", static_cast<std::uint64_t>(options.params.leaf_width))
+        .add("k_t", options.params.k_t)
+        .add("k_i", options.params.k_i)
         .add_raw("results", raykiln::bench::json_list(results));
     if (!raykiln::bench::write_file(options.json, report.text())) return 1;
   }
@@ -254,6 +256,10 @@ int main(int argc, char** argv) {
   app.add_option("--triangles", options.triangles, "of each mesh, about")
       ->check(CLI::Range(std::size_t{2}, std::size_t{100'000'000}));
   app.add_option("--leaf-width", options.params.leaf_width, "8 or 16")->check(CLI::IsMember({8, 16}));
+  app.add_option("--k-t", options.params.k_t, "cost of a step, for the builder")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--k-i", options.params.k_i, "cost of a triangle test, for the builder")
+      ->check(CLI::PositiveNumber);
   app.add_option("--image", options.image, "pixels along a side of the picture")
       ->check(CLI::Range(8, 8192));
   app.add_option("--stream", options.stream, "rays a call")

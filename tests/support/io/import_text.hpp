@@ -99,10 +99,10 @@ inline void expect_sound(const ImportedScene& imported) {
   for (const PointLight& l : scene.point_lights) ASSERT_TRUE(finite(l.position) && finite(l.intensity));
   for (const Camera& c : scene.cameras) {
     ASSERT_TRUE(finite(c.eye));
-    ASSERT_NEAR(length(Vec3d(c.right)), 1.0, 1e-6);
-    ASSERT_NEAR(length(Vec3d(c.up)), 1.0, 1e-6);
-    ASSERT_NEAR(length(Vec3d(c.forward)), 1.0, 1e-6);
-    ASSERT_TRUE(c.fov_y_rad > 0.0F && c.fov_y_rad < 3.1416F);
+    ASSERT_NEAR(length(c.right), 1.0, 1e-6);
+    ASSERT_NEAR(length(c.up), 1.0, 1e-6);
+    ASSERT_NEAR(length(c.forward), 1.0, 1e-6);
+    ASSERT_TRUE(c.fov_y_rad > 0.0 && c.fov_y_rad < 3.1416);
   }
 }
 

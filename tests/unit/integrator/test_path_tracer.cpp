@@ -17,7 +17,7 @@ class PathTracerTest : public testing::Test {
   }
 
   std::vector<PathResult> trace(std::span<const PathStart> starts, const PathSettings& settings) {
-    PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20), settings);
+    PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20, bounds(*tree_)), settings);
     std::vector<PathResult> results(starts.size());
     RenderStats stats;
     EXPECT_TRUE(tracer.trace(starts, results, stats, {}));
@@ -51,7 +51,7 @@ TEST_F(PathTracerTest, AResultDependsOnItsStartAlone) {
 }
 
 TEST_F(PathTracerTest, ScratchLeavesNothingBehind) {
-  PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20), {});
+  PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20, bounds(*tree_)), {});
   std::vector<PathResult> first(starts_.size()), second(starts_.size());
   RenderStats stats;
   std::stop_source stopped;
@@ -67,7 +67,7 @@ TEST_F(PathTracerTest, PathsThatRouletteEndsAreCounted) {
     PathSettings settings;
     settings.max_depth = 128;
     settings.bsdf.light.roulette = roulette;
-    PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20), settings);
+    PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20, bounds(*tree_)), settings);
     std::vector<PathResult> results(starts_.size());
     RenderStats stats;
     EXPECT_TRUE(tracer.trace(starts_, results, stats, {}));
@@ -81,7 +81,7 @@ TEST_F(PathTracerTest, PathsThatRouletteEndsAreCounted) {
 TEST_F(PathTracerTest, DepthZeroSeesLampsAndPointLightsOnly) {
   PathSettings settings;
   settings.max_depth = 0;
-  PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20), settings);
+  PathTracer tracer({scene_, *tree_, emitters_}, CameraRays(scene_.cameras[0], 30, 20, bounds(*tree_)), settings);
   std::vector<PathResult> results(starts_.size());
   RenderStats stats;
   ASSERT_TRUE(tracer.trace(starts_, results, stats, {}));

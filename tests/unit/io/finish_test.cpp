@@ -74,7 +74,7 @@ TEST(Recentre, CamerasAndLightsMoveAlong) {
          "point_lights": [{"position": [1000000.25, 2, 0], "intensity": [1, 1, 1]}]})"}});
   const Scene& scene = imported.scene;
   ASSERT_NE(scene.origin.x, 0.0);
-  EXPECT_EQ(Vec3d(scene.cameras[0].eye) + scene.origin, Vec3d(1000000.5, 0.0, 3.0));
+  EXPECT_EQ(scene.cameras[0].eye + scene.origin, Vec3d(1000000.5, 0.0, 3.0));
   EXPECT_EQ(Vec3d(scene.point_lights[0].position) + scene.origin, Vec3d(1000000.25, 2.0, 0.0));
 }
 
@@ -131,13 +131,13 @@ TEST(Defaults, TheCameraSeesAllOfTheScene) {
   ASSERT_EQ(imported.scene.cameras.size(), 1U);
   EXPECT_EQ(count_of(imported, Warn::kDefaultCamera), 1U);
   const Camera& camera = imported.scene.cameras[0];
-  const double slope = std::tan(0.5 * static_cast<double>(camera.fov_y_rad));
+  const double slope = std::tan(0.5 * camera.fov_y_rad);
   for (const Vec3f& p : imported.scene.mesh.positions) {
-    const Vec3d v = Vec3d(p) - Vec3d(camera.eye);
-    const double depth = dot(v, Vec3d(camera.forward));
+    const Vec3d v = Vec3d(p) - camera.eye;
+    const double depth = dot(v, camera.forward);
     ASSERT_GT(depth, 0.0);
-    ASSERT_LE(std::abs(dot(v, Vec3d(camera.up))), slope * depth);
-    ASSERT_LE(std::abs(dot(v, Vec3d(camera.right))), slope * depth);
+    ASSERT_LE(std::abs(dot(v, camera.up)), slope * depth);
+    ASSERT_LE(std::abs(dot(v, camera.right)), slope * depth);
   }
 }
 

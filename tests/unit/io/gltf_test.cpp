@@ -181,9 +181,9 @@ TEST(Gltf, CamerasLookAlongMinusZ) {
   const auto imported = scene_of(builder);
   ASSERT_EQ(imported.scene.cameras.size(), 1U);
   EXPECT_EQ(imported.scene.cameras[0].name, "c");
-  EXPECT_EQ(imported.scene.cameras[0].eye, Vec3f(0, 0, 2));
-  EXPECT_EQ(imported.scene.cameras[0].forward, Vec3f(0, 0, -1));
-  EXPECT_FLOAT_EQ(imported.scene.cameras[0].fov_y_rad, 0.8F);
+  EXPECT_EQ(imported.scene.cameras[0].eye, Vec3d(0, 0, 2));
+  EXPECT_EQ(imported.scene.cameras[0].forward, Vec3d(0, 0, -1));
+  EXPECT_EQ(imported.scene.cameras[0].fov_y_rad, 0.8);
   EXPECT_EQ(count_of(imported, Warn::kUnsupportedCamera), 1U);
 }
 

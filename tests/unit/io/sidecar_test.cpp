@@ -1,6 +1,7 @@
 // raykiln.json: one table for the reader and for the schema (see check_schema.py).
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "support/io/import_text.hpp"
@@ -41,10 +42,10 @@ TEST(Sidecar, SetsCamerasLightsBackgroundAndMaterials) {
       "materials": {"default": {"diffuse": [0.1, 0.2, 0.3], "specular_exp": 1e6}}})"}});
   const Scene& scene = imported.scene;
   ASSERT_EQ(scene.cameras.size(), 1U);
-  EXPECT_EQ(scene.cameras[0].eye, Vec3f(0, 0, 5));
-  EXPECT_EQ(scene.cameras[0].forward, Vec3f(0, 0, -1));
-  EXPECT_EQ(scene.cameras[0].right, Vec3f(1, 0, 0));
-  EXPECT_FLOAT_EQ(scene.cameras[0].fov_y_rad, 1.5707963F);
+  EXPECT_EQ(scene.cameras[0].eye, Vec3d(0, 0, 5));
+  EXPECT_EQ(scene.cameras[0].forward, Vec3d(0, 0, -1));
+  EXPECT_EQ(scene.cameras[0].right, Vec3d(1, 0, 0));
+  EXPECT_DOUBLE_EQ(scene.cameras[0].fov_y_rad, 0.5 * std::numbers::pi);
   ASSERT_EQ(scene.point_lights.size(), 1U);
   EXPECT_EQ(scene.point_lights[0].position, Vec3f(1, 2, 3));
   EXPECT_EQ(scene.point_lights[0].intensity, Rgb(4, 5, 6));
@@ -59,7 +60,7 @@ TEST(Sidecar, ScaleAppliesToEveryPosition) {
       "camera": {"eye": [0, 0, 4], "look_at": [0, 0, 0]},
       "point_lights": [{"position": [2, 0, 0], "intensity": [1, 1, 1]}]})"}});
   EXPECT_EQ(imported.scene.bounds.hi, Vec3f(0.5F, 0.5F, 0.0F));
-  EXPECT_EQ(imported.scene.cameras[0].eye, Vec3f(0, 0, 2));
+  EXPECT_EQ(imported.scene.cameras[0].eye, Vec3d(0, 0, 2));
   EXPECT_EQ(imported.scene.point_lights[0].position, Vec3f(1, 0, 0));
 }
 

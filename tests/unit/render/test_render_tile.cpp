@@ -182,7 +182,7 @@ TEST(RenderTile, ScaledByAPowerOfTwoIsTheSamePicture) {
     for (Vec3f& p : b.scene().mesh.positions) p *= scale;
     b.scene().bounds.lo *= scale;
     b.scene().bounds.hi *= scale;
-    b.scene().cameras[0].eye *= scale;
+    b.scene().cameras[0].eye *= static_cast<double>(scale);
     for (PointLight& l : b.scene().point_lights) {
       l.position *= scale;
       l.intensity *= scale * scale;

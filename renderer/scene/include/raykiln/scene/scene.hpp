@@ -42,14 +42,15 @@ struct PointLight {
 };
 
 /// Pinhole. right, up, forward are orthonormal (right = forward x up); fov is the full vertical
-/// angle. Pixel (0, 0) is at the top left.
+/// angle. Pixel (0, 0) is at the top left. In double: from 10^6 times the scene's size one step of a
+/// float eye, or of a float direction, is as long as 6 % of the scene.
 struct Camera {
   std::string name;
-  Vec3f eye{0.0F};  ///< relative to Scene::origin
-  Vec3f right{1.0F, 0.0F, 0.0F};
-  Vec3f up{0.0F, 1.0F, 0.0F};
-  Vec3f forward{0.0F, 0.0F, -1.0F};
-  float fov_y_rad = 0.7F;
+  Vec3d eye{0.0};  ///< relative to Scene::origin
+  Vec3d right{1.0, 0.0, 0.0};
+  Vec3d up{0.0, 1.0, 0.0};
+  Vec3d forward{0.0, 0.0, -1.0};
+  double fov_y_rad = 0.7;
 };
 
 struct Scene {

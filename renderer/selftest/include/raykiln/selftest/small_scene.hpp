@@ -81,11 +81,11 @@ class SmallScene {
   void look(const Vec3d& eye, const Vec3d& target, const Vec3d& up, double fov_y_rad) {
     Camera camera;
     const Vec3d forward = normalize(target - eye), right = normalize(cross(forward, up));
-    camera.eye = Vec3f(eye);
-    camera.forward = Vec3f(forward);
-    camera.right = Vec3f(right);
-    camera.up = Vec3f(cross(right, forward));
-    camera.fov_y_rad = static_cast<float>(fov_y_rad);
+    camera.eye = eye;
+    camera.forward = forward;
+    camera.right = right;
+    camera.up = cross(right, forward);
+    camera.fov_y_rad = fov_y_rad;
     scene_.cameras = {camera};
   }
 

@@ -26,4 +26,9 @@ struct SurfacePoint {
 /// so that scaling a scene by a power of two scales origins exactly.
 [[nodiscard]] Vec3f ray_origin(const SurfacePoint& point, const Vec3d& direction);
 
+/// End of a ray from `origin` to `point`: the same on the side of `origin`, and farther from the plane
+/// by what the far end of a ray moves when its direction is rounded. A ray o = origin,
+/// d = end - origin, both in float, meets the point's own triangle at no t < 1.
+[[nodiscard]] Vec3f ray_end(const SurfacePoint& point, const Vec3d& origin);
+
 }  // namespace raykiln::render
