@@ -1,11 +1,13 @@
-// T01, T02, T08-T13, T17, T19: closed forms that concern lobes, borders and long paths, and D06-D09.
+// T01, T02, T08-T13, T17, T19: closed forms that concern lobes, borders and long paths, and D07-D09.
 // The first member of each class is the scene that also `raykiln selftest` renders.
 #include <gtest/gtest.h>
 
 #include <array>
 
+#include "hard/support/family.hpp"
 #include "hard/support/lobes.hpp"
 #include "hard/support/members.hpp"
+#include "hard/support/models.hpp"
 #include "hard/support/report.hpp"
 #include "raykiln/selftest/enclosures.hpp"
 #include "raykiln/selftest/glass.hpp"
@@ -18,49 +20,18 @@ namespace {
 using namespace render;
 using namespace render::selftest;
 
-const std::array<LightModel, 2> kModels{kPhysicalModel, kSeedModel};
-
-LightModel fixed_depth(LightModel model) {
-  model.roulette = false;
-  return model;
-}
-
 /// Without roulette a path takes all 128 reflections, and the scenes of enclosures take one sample
 /// where roulette takes 16; the named members here take as many in both models.
 std::uint64_t equally_many(const LightModel& model, std::uint64_t samples) {
   return model.roulette ? samples : 16 * samples;
 }
 
-/// Named members go into the table in full, of the others how many held.
-class Family {
- public:
-  explicit Family(Row& row) : row_(row) {}
-  void named(const std::string& what, const Outcome& outcome) {
-    EXPECT_TRUE(outcome.passed) << what << ": " << outcome.measured;
-    row_.measured(what + ":", outcome.measured);
-  }
-  void member(const Outcome& outcome) {
-    EXPECT_TRUE(outcome.passed) << "member " << members_ << ": " << outcome.measured;
-    ++members_;
-    held_ += outcome.passed ? 1 : 0;
-  }
-  ~Family() {
-    if (members_ > 0) row_.measured("members that hold", shown(held_) + " of " + shown(members_));
-  }
-  Family(const Family&) = delete;
-  Family& operator=(const Family&) = delete;
-
- private:
-  Row& row_;
-  std::uint64_t members_ = 0, held_ = 0;
-};
-
 TEST(T01, WhiteFurnace) {
   Members members(5001);
   Row row("T01", "closed room that emits 1 - rho, rho 0.5; empty, with glass, mirror, translucent box; members: rho 0.1 to 0.9" +
           members.note(), "1 for every pixel, 4 sigma", "both");
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     family.named(name(model), furnace(0.5, FurnaceGuest::kNone, model, equally_many(model, 64)));
     for (const auto guest : {FurnaceGuest::kGlass, FurnaceGuest::kMirror, FurnaceGuest::kLeaf}) {
       family.member(furnace(0.5, guest, model, 64));
@@ -74,7 +45,7 @@ TEST(T02, DepthTruncatedFurnace) {
   Row row("T02", "the same after D reflections: rho 0.8 D 4, 8; rho 0.9 D 4, 16; rho 0.5 D 4; 20 members; roulette without limit" +
           members.note(), "E (1 - rho^(D+1))/(1 - rho): 1e-5 (cosine directions), 4 sigma (uniform); roulette: 1", "both");
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     for (const auto& [rho, depth] : {std::pair{0.8, 4}, {0.8, 8}, {0.9, 4}, {0.9, 16}, {0.5, 4}}) {
       family.named("rho " + shown(rho) + " D " + std::to_string(depth) + " " + name(model),
                    truncated_furnace(rho, depth, fixed_depth(model), 16));
@@ -92,7 +63,7 @@ TEST(T08, IntegratingSphereWithALight) {
   Row row("T08", "UV sphere 64 x 128, point light pi in its centre, rho 0.5; 3 members" + members.note(),
           "rho/(1 - rho): 4 sigma + 0.2 %", "both");
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     family.named(name(model), sphere_with_light(0.5, model, equally_many(model, 64)));
     for (int i = 0; i < 3; ++i) family.member(sphere_with_light(members.between(0.1, 0.9), model, 32));
   }
@@ -103,7 +74,7 @@ TEST(T09, IntegratingSphereWithACap) {
   Row row("T09", "sphere with a cap of 10 % that emits 2: albedo 0.8 everywhere, and a black cap; members" + members.note(),
           "0.8 and 0.571429 with the mesh's own share of the cap: 4 sigma + 0.3 %", "both");
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     for (const bool black : {false, true}) {
       family.named(name(model) + (black ? ", black cap" : ""), sphere_with_cap(0.8, black, model, equally_many(model, 64)));
       family.member(sphere_with_cap(members.between(0.2, 0.9), black, model, 32));
@@ -116,7 +87,7 @@ TEST(T10, MirrorCorridor) {
   Row row("T10", "facing mirrors k 0.9 and 0.8 that emit 0.3 and 0.05, e 1e12, after 0, 1, 2, 3, 4, 10, 20, 128 reflections; 10 members" +
           members.note(), "1e-4 + 4 sigma", "both");
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     for (const int depth : {0, 1, 2, 3, 4, 10, 20, 128}) {
       const Outcome outcome = mirror_corridor({}, depth, fixed_depth(model), 64);
       if (depth == 20 || depth == 128) family.named(name(model) + " D " + std::to_string(depth), outcome);
@@ -159,7 +130,7 @@ TEST(T12, GlassSlab) {
           members.note(), "(1 - F)/(1 + F) by the model's formula, 4 sigma at 1e6", "both");
   EXPECT_NEAR(slab_transmittance(0.04, -1), 0.923077, 5e-7);
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     for (const double degrees : {0.0, 30.0, 60.0, 85.0}) {
       family.named(name(model) + " at " + shown(degrees), slab(1.5, degrees * kDegree, -1, fixed_depth(model), 1'000'000));
     }
@@ -175,7 +146,7 @@ TEST(T13, WindowFromBelow) {
   Row row("T13", "looking up from under a surface of n 1.33 and 1.5, pixel centres; 8 members" + members.note(),
           "radius h tan(asin(1/n)) to 1 pixel, 0 beyond", "both");
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     for (const double n : {1.33, 1.5}) family.named(name(model) + " n " + shown(n), window_from_below(n, model));
     for (int i = 0; i < 4; ++i) family.member(window_from_below(members.between(1.1, 2.5), model));
   }
@@ -203,7 +174,7 @@ TEST(D09, RadianceAcrossABorder) {
   Row row("D09", "a border of n 1.5 head on, emitter inside seen from outside and the reverse; 8 members" + members.note(),
           "(1 - F)/n^2 outwards, (1 - F) n^2 inwards (physical); 1 - F both ways (seed)", "both");
   Family family(row);
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     for (const bool inside : {false, true}) {
       family.named(name(model) + (inside ? " inwards" : " outwards"), radiance_across_border(1.5, inside, model, 4096));
       for (int i = 0; i < 2; ++i) family.member(radiance_across_border(members.between(1.05, 3.0), inside, model, 4096));
@@ -227,7 +198,7 @@ TEST(S11, PointLightSeenInAGlossyMirror) {
   Family family(row);
   family.named("physical", mirror_image(1e4, 0.399987, kPhysicalModel, 32));
   family.named("seed", mirror_image(1e4, 0.399995, kSeedModel, 32));
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     SmallScene s;
     Material mirror;
     mirror.specular = Rgb(1.0F);
@@ -274,7 +245,7 @@ TEST(S10, ChainsOfSharpLobes) {
     const double truth = std::pow(static_cast<double>(mirror.specular.x) * kept, reflections);
     return statistically(m, truth, 160.0 * kUnit);
   };
-  for (const LightModel& model : kModels) {
+  for (const LightModel& model : kBothModels) {
     family.named(name(model), chain(0.9, 40, fixed_depth(model)));
     for (int i = 0; i < 5; ++i) family.member(chain(members.between(0.8, 1.0), static_cast<int>(members.between(5.0, 60.0)), fixed_depth(model)));
   }
@@ -311,7 +282,7 @@ TEST(D07, ThinPlates) {
     worst = std::max(worst, std::abs(all.mean - (1.0 - f) / (1.0 + f)) / all.standard_error());
   };
   for (const double thickness : {1e-2, 1e-4, 1e-5, 1.7e-6}) {
-    for (const LightModel& model : kModels) check(thickness, 1.5, model);
+    for (const LightModel& model : kBothModels) check(thickness, 1.5, model);
   }
   for (int i = 0; i < 8; ++i) check(members.scale(1.7e-6, 1e-1), members.between(1.1, 2.5), kPhysicalModel);
   row.measured("largest |z|", worst);

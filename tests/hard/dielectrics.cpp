@@ -7,6 +7,7 @@
 #include "hard/support/hard_meshes.hpp"
 #include "hard/support/lobes.hpp"
 #include "hard/support/members.hpp"
+#include "hard/support/models.hpp"
 #include "hard/support/pictures.hpp"
 #include "hard/support/report.hpp"
 #include "raykiln/selftest/measure.hpp"
@@ -22,13 +23,6 @@ using render::selftest::matte;
 using render::selftest::measure;
 using render::selftest::Measured;
 using render::selftest::SmallScene;
-
-RenderSettings square(int side, const LightModel& model) {
-  RenderSettings settings;
-  settings.width = settings.height = side;
-  settings.light_model = model;
-  return settings;
-}
 
 TEST(D01, ExactlyAtTheCriticalAngle) {
   Members members(401);
@@ -156,7 +150,7 @@ TEST(D03, IndexOneIsInvisibleInThePhysicalModel) {
     if (kind == 1) add_ball(s, glass, 1.0F);
     if (kind == 2) s.box({-2, -2, -0.5F}, {2, 2, 0.5F}, glass);
     s.look({0.3, 0.2, 4.0}, {0, 0, 0}, {0, 1, 0}, 0.8);
-    pictures[kind] = measure(s.scene(), square(64, kPhysicalModel), 16).pixels;
+    pictures[kind] = measure(s.scene(), square_settings(64, {}, kPhysicalModel), 16).pixels;
   }
   std::uint64_t beyond = 0;
   double largest = 0.0;
@@ -188,8 +182,7 @@ TEST(D03, IndexOneShowsSchlicksFloorInTheSeedModel) {
     s.level_square(2000.0F, -1.0F, glass, false);
     s.level_square(9000.0F, -2.0F, s.material(matte(0.0F, 1.0F)));
     s.look({-20.0 * std::sin(degrees * kDegree), 0, 20.0 * std::cos(degrees * kDegree)}, {0, 0, 0}, {0, 1, 0}, 1e-3);
-    RenderSettings settings = square(1, kSeedModel);
-    settings.max_depth = 64;
+    RenderSettings settings = square_settings(1, 64, kSeedModel);
     const Measured m = measure(s.scene(), settings, 100'000);
     const double f = std::pow(1.0 - std::cos(degrees * kDegree), 5.0), truth = (1.0 - f) / (1.0 + f);
     EXPECT_TRUE(within_four_sigma(m, truth, 1e-5)) << degrees << ' ' << m.mean << " against " << truth;
@@ -205,8 +198,7 @@ std::vector<PixelEstimate> blocks_of_ball(float index, bool reversed, const Ligh
   add_board(s, -3.0F);
   add_ball(s, s.material(clear_glass(index)), 1.0F, reversed);
   s.look({0.3, 0.2, 4.0}, {0, 0, 0}, {0, 1, 0}, 0.55);
-  RenderSettings settings = square(64, model);
-  settings.max_depth = 16;
+  RenderSettings settings = square_settings(64, 16, model);
   settings.seed = seed;
   const Picture image = picture(s.scene(), settings, samples);
   EXPECT_EQ(image.non_finite, 0U);
@@ -270,7 +262,7 @@ TEST(D05, HugeIndex) {
       s.level_square(1000.0F, -0.01F, glass, false);
       s.scene().background = Rgb(1.0F);
       s.look({0.3, 0.2, 4.0}, {0, 0, 0}, {0, 1, 0}, 0.3);
-      RenderSettings settings = square(32, model);
+      RenderSettings settings = square_settings(32, {}, model);
       settings.max_depth = 4096;
       const Measured m = measure(s.scene(), settings, 16);
       bad += m.stats.non_finite;

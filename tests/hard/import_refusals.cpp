@@ -77,7 +77,7 @@ TestMesh with_degenerate(const TestMesh& mesh, std::uint32_t extra, TestRandom& 
 
 TEST(K03_DegenerateTriangles, DroppedAndCounted) {
   Row row("K03", "10k terrain and 10 % extra: three equal, two equal, collinear integers; 3 members",
-          "picture bit-identical to the mesh without them; count exact", "seed");
+          "picture bit-identical to the mesh without them; count exact", "physical");
   TestRandom random(310);
   std::uint64_t wrong_counts = 0, wrong_pictures = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -298,7 +298,7 @@ TestMesh relief(std::uint64_t seed) {
 
 TEST(V08_FarAway, DoubleInputKeepsItsDigits) {
   Row row("V08", "1 m with a relief of 1 mm, moved by up to (+-1e6, +-1e6, +-1e6) m in double; 6 members",
-          "picture statistically equal to the one not moved", "seed");
+          "picture statistically equal to the one not moved", "physical");
   TestRandom random(801);
   double worst_share = 1.0, worst_z = 0.0;
   for (std::uint64_t member = 0; member < 6; ++member) {
@@ -324,7 +324,7 @@ TEST(V08_FarAway, DoubleInputKeepsItsDigits) {
 
 TEST(V08_FarAway, SingleInputIsWarnedAbout) {
   Row row("V08", "the same in single precision (glTF) at 1e6 m: ulp 0.0625 m",
-          "a warning with the ratio of the shortest edge to the ulp; no NaN", "seed");
+          "a warning with the ratio of the shortest edge to the ulp; no NaN", "physical");
   TestRandom random(802);
   const TestMesh mesh = relief(3);
   std::vector<float> numbers;

@@ -9,11 +9,13 @@
 #include <thread>
 
 #include "hard/support/members.hpp"
+#include "hard/support/models.hpp"
+#include "hard/support/pictures.hpp"
+#include "hard/support/pool_pictures.hpp"
 #include "hard/support/random_rooms.hpp"
 #include "hard/support/report.hpp"
 #include "hard/support/rules.hpp"
 #include "raykiln/selftest/measure.hpp"
-#include "raykiln/workers/local_pool.hpp"
 
 namespace raykiln::hard {
 namespace {
@@ -56,11 +58,11 @@ Scene scaled(Scene scene, int k) {
 
 TEST(X01, ScaleByPowersOfTwo) {
   Members members(4001);
-  Row row("X01", "random rooms times 2^k, k = -30, -10, 10, 30" + members.note(), "bit-identical planes");
+  Row row("X01", "random rooms times 2^k, k = -30, -10, 10, 30" + members.note(), "bit-identical planes", "both");
   Equalities equalities;
-  for (int i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < 6; ++i) {
     const Scene scene = random_room(members);
-    const RenderSettings settings = room_settings(members.bits());
+    const RenderSettings settings = room_settings(members.bits(), model_of(i));
     const std::uint64_t hash = hash_of(scene, settings);
     for (const int k : {-30, -10, 10, 30}) {
       equalities.check(hash == hash_of(scaled(scene, k), settings),
@@ -82,12 +84,6 @@ std::vector<PixelRect> rects_of(const RenderSettings& settings, int pixels) {
 
 void shuffle(std::vector<PixelRect>& rects, Members& members) {
   for (std::size_t i = rects.size(); i > 1; --i) std::swap(rects[i - 1], rects[members.bits() % i]);
-}
-
-std::shared_ptr<const PreparedScene> prepared(const Scene& scene) {
-  const auto shared = std::make_shared<const Scene>(scene);
-  SerialTaskRunner runner;
-  return prepare(shared, build_scene_tree(*shared, {}, runner));
 }
 
 Film by_threads(const PreparedScene& scene, const RenderSettings& settings,
@@ -112,15 +108,16 @@ Film by_threads(const PreparedScene& scene, const RenderSettings& settings,
 TEST(X02, ThreadCountAndSchedule) {
   Members members(4002);
   Row row("X02", "1, 2, 7, 64 threads, groups of 1, 16, 1000 pixels in random order, stopped and resumed" +
-                     members.note(), "bit-identical planes");
+                     members.note(), "bit-identical planes", "both");
   Equalities equalities;
   const Scene scene = random_room(members);
-  const RenderSettings settings = room_settings(members.bits());
   const auto ready = prepared(scene);
   const auto blocks = blocks_for(21);
-  const std::uint64_t hash = selftest::bit_hash(render_film(scene, settings, 21));
+  std::size_t turn = 0;
   for (const int n : {1, 2, 7, 64}) {
     for (const int group : {1, 16, 1000}) {
+      const RenderSettings settings = room_settings(4002, model_of(turn++));
+      const std::uint64_t hash = selftest::bit_hash(render_film(scene, settings, 21));
       auto rects = rects_of(settings, group);
       shuffle(rects, members);
       const std::string what = std::to_string(n) + " threads, groups of " + std::to_string(group);
@@ -140,39 +137,19 @@ TEST(X02, ThreadCountAndSchedule) {
 
 TEST(X02, ServerPool) {
   Members members(4012);
-  Row row("X02", "the server's pool of 1, 2, 7, 64 threads" + members.note(), "bit-identical planes");
+  Row row("X02", "the server's pool of 1, 2, 7, 64 threads" + members.note(), "bit-identical planes", "both");
   Equalities equalities;
-  const Scene scene = random_room(members);
-  const RenderSettings settings = room_settings(members.bits());
-  const auto ready = prepared(scene);
-  const auto blocks = blocks_for(kSamples);
-  const std::uint64_t hash = selftest::bit_hash(render_film(scene, settings, kSamples));
-  for (const int n : {1, 2, 7, 64}) {
-    Film film(settings.width, settings.height);
-    std::mutex mutex;
-    auto rects = rects_of(settings, 5);
-    shuffle(rects, members);
-    std::atomic<std::size_t> answers{0};
-    server::WorkerSettings pool_settings;
-    pool_settings.threads = n;
-    server::LocalPool pool(pool_settings);
-    for (const PixelRect& rect : rects) {
-      server::TileTask task;
-      task.job = "j";
-      task.scene = ready;
-      task.settings = settings;
-      task.item.end_block = blocks.size();
-      task.item.parts = {{0, {rect.x0, rect.y0, rect.x1, rect.y1}}};
-      task.blocks = blocks;
-      pool.start(std::move(task), [&](const server::TileOutcome& outcome) {
-        const std::lock_guard lock(mutex);
-        for (const TileResult& result : outcome.results) merge(film, result);
-        ++answers;
-      });
+  for (const LightModel& model : kBothModels) {
+    const Scene scene = random_room(members);
+    const RenderSettings settings = room_settings(members.bits(), model);
+    const auto ready = prepared(scene);
+    const std::uint64_t hash = selftest::bit_hash(render_film(scene, settings, kSamples));
+    for (const int n : {1, 2, 7, 64}) {
+      auto rects = rects_of(settings, 5);
+      shuffle(rects, members);
+      const Film film = film_by_pool(ready, settings, kSamples, n, rects);
+      equalities.check(hash == selftest::bit_hash(film), std::to_string(n) + " threads, " + name(model));
     }
-    while (answers < rects.size()) std::this_thread::yield();
-    pool.stop();
-    equalities.check(hash == selftest::bit_hash(film), std::to_string(n) + " threads");
   }
   equalities.report(row);
 }
@@ -203,11 +180,11 @@ Scene shuffled(const Scene& scene, Members& members) {
 TEST(X03, TheTreeMustNotChangeTheImage) {
   Members members(4003);
   Row row("X03", "depths 0, 1, 8, 64, K_t/K_i 0.1, 1, 10, leaves of 8 and 16, brute force, shuffled triangles" +
-                     members.note(), "bit-identical planes");
+                     members.note(), "bit-identical planes", "both");
   Equalities equalities;
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     const Scene scene = random_room(members, 3, 120);
-    RenderSettings settings = room_settings(members.bits());
+    RenderSettings settings = room_settings(members.bits(), model_of(i));
     const std::uint64_t hash = hash_of(scene, settings);
     const std::string room = "room " + std::to_string(i) + ", ";
     for (const int depth : {0, 1, 8, 64}) {
@@ -235,11 +212,11 @@ bool scaled_exactly(const std::vector<double>& a, const std::vector<double>& b, 
 TEST(X04, AllLightTimesAPowerOfTwo) {
   Members members(4004);
   Row row("X04", "all emission and intensities times 2^k, k = -40 .. 40" + members.note(),
-          "picture times 2^k bit for bit");
+          "picture times 2^k bit for bit", "both");
   Equalities equalities;
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     const Scene scene = random_room(members);
-    const RenderSettings settings = room_settings(members.bits());
+    const RenderSettings settings = room_settings(members.bits(), model_of(i));
     const auto plain = render_film(scene, settings, kSamples).plane("beauty");
     for (const int k : {-40, -17, -1, 1, 23, 40}) {
       Scene bright = scene;
@@ -256,12 +233,12 @@ TEST(X04, AllLightTimesAPowerOfTwo) {
 TEST(X04, SumOfTwoLights) {
   Members members(4014);
   Row row("X04", "picture of two point lights against the sum of the pictures of each" + members.note(),
-          "relative n 2^-53 + 4u");
+          "relative n 2^-53 + 4u", "both");
   double worst = 0.0;
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     Scene both = random_room(members);
     for (Material& material : both.materials) material.emission = Rgb(0.0F);
-    const RenderSettings settings = room_settings(members.bits());
+    const RenderSettings settings = room_settings(members.bits(), model_of(i));
     Scene a = both, b = both;
     a.point_lights.pop_back();
     b.point_lights.erase(b.point_lights.begin());
@@ -345,20 +322,24 @@ std::vector<Motion> motions() {
 TEST(X05, RotationAndTranslation) {
   Members members(4005);
   Row row("X05", "a room turned and moved, against itself with another seed" + members.note(),
-          "99.75 % of the pixels in the Sidak band, global mean within 4 sigma; background seen from the closed room: 0");
+          "99.75 % of the pixels in the Sidak band, global mean within 4 sigma; background seen from the closed room: 0", "both");
   Scene scene = random_room(members, 4, 0);
   for (Material& material : scene.materials) {
     material.specular = Rgb(0.0F);
     material.transparent = 0.0F;
     if (material.diffuse == Rgb(0.0F)) material.diffuse = Rgb(0.4F);
   }
-  RenderSettings settings = room_settings(members.bits());
-  const std::uint64_t samples = trials(512, 8192);
-  const auto reference = estimates(render_film(scene, settings, samples));
+  const std::uint64_t samples = trials(384, 8192);
+  std::array<std::vector<PixelEstimate>, 2> references;
+  for (std::size_t i = 0; i < 2; ++i) {
+    references[i] = estimates(render_film(scene, room_settings(members.bits(), model_of(i)), samples));
+  }
+  std::size_t turn = 0;
   double least = 1.0, largest_z = 0.0;
   std::uint64_t leaks = 0, rays = 0;
   for (const Motion& motion : motions()) {
-    settings.seed = members.bits();
+    const auto& reference = references[turn % 2];
+    const RenderSettings settings = room_settings(members.bits(), model_of(turn++));
     const Scene other = moved(scene, motion.turns, motion.shift);
     RenderStats stats;
     const auto compared = compare_images(reference, estimates(render_film(other, settings, samples, &stats)));
@@ -386,11 +367,11 @@ Rgb permuted(const Rgb& c, const std::array<int, 3>& p) { return {c[p[0]], c[p[1
 
 TEST(X06, ChannelPermutation) {
   Members members(4006);
-  Row row("X06", "RGB of all materials, lights and emission permuted" + members.note(), "picture permuted bit for bit");
+  Row row("X06", "RGB of all materials, lights and emission permuted" + members.note(), "picture permuted bit for bit", "both");
   Equalities equalities;
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     const Scene scene = random_room(members);
-    const RenderSettings settings = room_settings(members.bits());
+    const RenderSettings settings = room_settings(members.bits(), model_of(i));
     const auto plain = render_film(scene, settings, kSamples).plane("beauty");
     for (const std::array<int, 3>& p : {std::array{1, 2, 0}, std::array{2, 0, 1}, std::array{1, 0, 2},
                                         std::array{0, 2, 1}, std::array{2, 1, 0}}) {

@@ -6,6 +6,7 @@
 #include "hard/support/hard_meshes.hpp"
 #include "hard/support/lobes.hpp"
 #include "hard/support/members.hpp"
+#include "hard/support/models.hpp"
 #include "hard/support/report.hpp"
 #include "raykiln/selftest/measure.hpp"
 #include "raykiln/selftest/small_scene.hpp"
@@ -19,14 +20,6 @@ using render::selftest::matte;
 using render::selftest::measure;
 using render::selftest::Measured;
 using render::selftest::SmallScene;
-
-RenderSettings square(int side, const LightModel& model, int depth) {
-  RenderSettings settings;
-  settings.width = settings.height = side;
-  settings.light_model = model;
-  settings.max_depth = depth;
-  return settings;
-}
 
 /// 80 faces with the sphere's normals at the corners; `flipped` turns those of every other corner.
 SmallScene smooth_ball(const Material& material, bool flipped) {
@@ -66,9 +59,9 @@ TEST(S09, InterpolatedNormalsAgainstGeometry) {
     for (const LightModel& model : {kPhysicalModel, kSeedModel}) {
       const Vec3d view = direction();
       s.look(3.0 * view, {0, 0, 0}, {0.3, 1.0, 0.2}, 0.9);
-      const Measured out = measure(s.scene(), square(32, model, 8), 8);
+      const Measured out = measure(s.scene(), square_settings(32, 8, model), 8);
       s.look(0.3 * view, {0, 0, 0}, {0.3, 1.0, 0.2}, 2.0);
-      const Measured in = measure(s.scene(), square(32, model, 8), 8);
+      const Measured in = measure(s.scene(), square_settings(32, 8, model), 8);
       negative += out.stats.negative + in.stats.negative;
       bad += out.stats.non_finite + in.stats.non_finite;
       outside += out.mean;
@@ -133,7 +126,7 @@ TEST(D06, TouchingDielectricAndDiffuseFaces) {
     mixed += glass == (glass_first ? found.size() : 0U) ? 0U : 1U;
     s.look({2.0, 1.5, 2.0}, {0, 0, 0.4}, {0, 0, 1}, 0.8);
     for (const LightModel& model : {kPhysicalModel, kSeedModel}) {
-      const Measured m = measure(s.scene(), square(16, model, 48), 16);
+      const Measured m = measure(s.scene(), square_settings(16, 48, model), 16);
       EXPECT_LE(m.mean, 1.0 + 4.0 * m.standard_error + 1e-5) << name(model) << ' ' << glass_first;
       EXPECT_EQ(m.stats.non_finite, 0U);
       brightest = std::max(brightest, m.mean - 4.0 * m.standard_error);

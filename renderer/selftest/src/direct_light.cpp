@@ -12,10 +12,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kNarrow = 1e-6;  ///< field of view that sees one point, rad
 
-RenderSettings one_pixel(int depth) {
+RenderSettings one_pixel(const LightModel& model) {
   RenderSettings settings;
   settings.width = settings.height = 1;
-  settings.max_depth = depth;
+  settings.max_depth = 0;
+  settings.light_model = model;
   settings.pixel_mode = PixelMode::kCentre;
   return settings;
 }
@@ -39,7 +40,7 @@ Outcome light_over_plane(const LightOverPlane& in) {
   SmallScene s = lit_plane(in, 4.0 * reach);
   const Vec3d point(in.distance * std::cos(in.azimuth_rad), in.distance * std::sin(in.azimuth_rad), 0);
   s.look(point + reach * Vec3d(0.3, 0.2, 0.8), point, {0, 1, 0}, kNarrow);
-  return exact_to(measure(s.scene(), one_pixel(0), 1), irradiated(in, in.distance), 1e-5);
+  return exact_to(measure(s.scene(), one_pixel(in.model), 1), irradiated(in, in.distance), 1e-5);
 }
 
 Outcome light_over_square(const LightOverPlane& in, std::uint64_t samples) {
@@ -49,6 +50,7 @@ Outcome light_over_square(const LightOverPlane& in, std::uint64_t samples) {
   RenderSettings settings;
   settings.width = settings.height = 8;
   settings.max_depth = 0;
+  settings.light_model = in.model;
   const double omega = 4.0 * std::atan(side * side / (in.height * std::sqrt(in.height * in.height +
                                                                              2.0 * side * side)));
   const double truth = in.albedo / kPi * in.intensity * omega / (4.0 * side * side);
@@ -65,7 +67,7 @@ Outcome translucent_sheet(const LightOverPlane& in) {
     s.level_square(static_cast<float>(4.0 * in.height), 0.0F, s.material(sheet));
     s.point_light({0, 0, in.height}, Rgb(static_cast<float>(in.intensity)));
     s.look(in.height * Vec3d(0.3, 0.2, 0.5 * side), {0, 0, 0}, {0, 1, 0}, kNarrow);
-    const Outcome one = exact_to(measure(s.scene(), one_pixel(0), 1), truth, 1e-5);
+    const Outcome one = exact_to(measure(s.scene(), one_pixel(in.model), 1), truth, 1e-5);
     both.passed = both.passed && one.passed;
     both.measured += (side > 0.0 ? "lit side " : "; far side ") + one.measured;
   }
@@ -80,7 +82,7 @@ Outcome umbra_of_square(const Umbra& in) {
   s.level_square(static_cast<float>(in.half), static_cast<float>(in.occluder),
                  s.material(matte(0.5F)));
   s.look({0, 0, eye}, {0, 0, 0}, {0, 1, 0}, 2.0 * std::atan(view / eye));
-  RenderSettings settings = one_pixel(0);
+  RenderSettings settings = one_pixel(in.model);
   settings.width = settings.height = in.pixels;
   const Measured m = measure(s.scene(), settings, 1);
   const double pixel = 2.0 * view / in.pixels;

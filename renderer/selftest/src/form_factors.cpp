@@ -103,6 +103,7 @@ Outcome square_over_element(const SquareOverElement& in, bool emitter_sampling,
   RenderSettings settings;
   settings.width = settings.height = 4;
   settings.max_depth = 1;
+  settings.light_model = in.model;
   settings.emitter_sampling = emitter_sampling;
   const double factor = element_to_rectangle(-half - in.x, half - in.x, -half - in.y, half - in.y,
                                              in.height);
@@ -139,6 +140,7 @@ Outcome parallel_squares(const ParallelSquares& in, int plate, std::uint64_t sam
   RenderSettings settings;
   settings.width = settings.height = 8;
   settings.max_depth = 64;
+  settings.light_model = in.model;
   const PlateRadiances truth = parallel_squares_truth(in);
   return statistically(measure(s.scene(), settings, samples),
                        plate == 1 ? truth.mean_1 : truth.mean_2, 2e-6);
@@ -159,6 +161,7 @@ Measured touching_rectangles_picture(const TouchingRectangles& in, bool emitter_
   RenderSettings settings;
   settings.width = settings.height = 16;
   settings.max_depth = 1;
+  settings.light_model = in.model;
   settings.emitter_sampling = emitter_sampling;
   settings.seed = seed;
   Measured m = measure(s.scene(), settings, samples);

@@ -20,22 +20,9 @@ struct Picture {
   std::vector<double> beauty;         ///< mean RGB a pixel
 };
 
-/// Renders all samples of all pixels; the tiles are `tile` pixels wide and high.
-inline Picture picture(const render::PreparedScene& scene, const render::RenderSettings& settings,
-                       std::uint64_t samples, int tile = 1 << 20) {
-  render::Film film(settings.width, settings.height);
+/// What a film shows.
+inline Picture picture_of(const render::Film& film) {
   Picture result;
-  const auto blocks = render::blocks_for(samples);
-  for (int y = 0; y < settings.height; y += tile) {
-    for (int x = 0; x < settings.width; x += tile) {
-      const render::PixelRect rect{x, y, std::min(x + tile, settings.width),
-                                   std::min(y + tile, settings.height)};
-      const auto part = render::render_tile(scene, settings, rect, blocks, {});
-      render::add(result.stats, part.stats);
-      render::merge(film, part);
-    }
-  }
-  result.non_finite = result.stats.non_finite;
   std::vector<std::vector<double>> planes;
   for (const auto& spec : render::film_planes()) planes.push_back(film.plane(spec.name));
   result.hash = bit_hash(planes);
@@ -52,13 +39,38 @@ inline Picture picture(const render::PreparedScene& scene, const render::RenderS
   return result;
 }
 
-inline Picture picture(const render::Scene& scene, const render::RenderSettings& settings,
-                       std::uint64_t samples, const render::BuildParams& params = {}) {
+/// Renders all samples of all pixels; the tiles are `tile` pixels wide and high.
+inline Picture picture(const render::PreparedScene& scene, const render::RenderSettings& settings,
+                       std::uint64_t samples, int tile = 1 << 20) {
+  render::Film film(settings.width, settings.height);
+  render::RenderStats stats;
+  const auto blocks = render::blocks_for(samples);
+  for (int y = 0; y < settings.height; y += tile) {
+    for (int x = 0; x < settings.width; x += tile) {
+      const render::PixelRect rect{x, y, std::min(x + tile, settings.width),
+                                   std::min(y + tile, settings.height)};
+      const auto part = render::render_tile(scene, settings, rect, blocks, {});
+      render::add(stats, part.stats);
+      render::merge(film, part);
+    }
+  }
+  Picture result = picture_of(film);
+  result.stats = stats;
+  result.non_finite = stats.non_finite;
+  return result;
+}
+
+/// The scene with its tree, built on this thread.
+inline std::shared_ptr<const render::PreparedScene> prepared(const render::Scene& scene,
+                                                             const render::BuildParams& params = {}) {
   const auto shared = std::make_shared<const render::Scene>(scene);
   render::SerialTaskRunner runner;
-  const auto prepared =
-      render::prepare(shared, render::build_scene_tree(*shared, params, runner));
-  return picture(*prepared, settings, samples);
+  return render::prepare(shared, render::build_scene_tree(*shared, params, runner));
+}
+
+inline Picture picture(const render::Scene& scene, const render::RenderSettings& settings,
+                       std::uint64_t samples, const render::BuildParams& params = {}) {
+  return picture(*prepared(scene, params), settings, samples);
 }
 
 }  // namespace raykiln::hard

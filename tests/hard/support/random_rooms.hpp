@@ -60,11 +60,12 @@ inline render::Scene random_room(Members& members, int boxes = 3, int loose = 24
   return s.scene();
 }
 
-inline render::RenderSettings room_settings(std::uint64_t seed) {
+inline render::RenderSettings room_settings(std::uint64_t seed, const render::LightModel& model) {
   render::RenderSettings settings;
   settings.width = 24;
   settings.height = 18;
   settings.max_depth = 6;
+  settings.light_model = model;
   settings.seed = seed;
   return settings;
 }

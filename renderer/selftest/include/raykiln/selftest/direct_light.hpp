@@ -9,6 +9,7 @@ struct LightOverPlane {
   double albedo = 0.8, intensity = 10.0;  ///< reflectance; W/sr
   double height = 2.0, distance = 1.0;    ///< of the light over the plane; of the point from its foot
   double azimuth_rad = 0.0;               ///< direction from the foot to the point
+  LightModel model = kPhysicalModel;
 };
 
 /// T03: L = (a/pi) I h/(h^2 + d^2)^(3/2), to 1e-5.
@@ -25,6 +26,7 @@ struct Umbra {
   double light = 3.0, occluder = 1.0;  ///< heights over the floor
   double half = 0.5;                   ///< half-side of the occluder
   int pixels = 64;                     ///< side of the picture
+  LightModel model = kPhysicalModel;
 };
 
 /// T20: inside half * light/(light - occluder) exactly 0, outside the formula of T03, but for one

@@ -17,6 +17,7 @@ struct SquareOverElement {
   double albedo = 0.8, radiance = 1.0;
   double side = 1.0, height = 1.0;
   double x = 0.0, y = 0.0;  ///< of the element from the point under the square's centre
+  LightModel model = kPhysicalModel;
 };
 
 /// T05: first bounce from a square emitter onto one point: L = a Le F. `emitter_sampling` chooses
@@ -27,6 +28,7 @@ struct SquareOverElement {
 struct ParallelSquares {
   double emission = 1.0, albedo_1 = 0.5, albedo_2 = 0.8;
   double distance = 1.0;  ///< of the unit squares
+  LightModel model = kPhysicalModel;
 };
 
 /// Radiances of the plates by the integral equation: Gauss-Legendre Nystroem, 16 points an axis.
@@ -41,6 +43,7 @@ struct PlateRadiances {
 
 struct TouchingRectangles {
   double receiver = 1.0, emitter = 1.0, edge = 1.0;  ///< widths, and the length of the common edge
+  LightModel model = kPhysicalModel;
 };
 
 /// T07 and L07: a white receiver lit by an emitter at a right angle, first bounce: mean L = F.
