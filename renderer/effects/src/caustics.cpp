@@ -14,7 +14,7 @@ Judgement judge(const EffectView& view) {
   if (diffuse == nullptr || specular == nullptr)
     return {false, "the scene has not both diffuse and specular surfaces"};
   if (!reaches_two_surfaces(view)) return {false, "light does not come by way of two surfaces"};
-  return {true, "specular `" + specular->name + "` may light diffuse `" + diffuse->name + "`"};
+  return {true, "specular " + named(*specular) + " may light diffuse " + named(*diffuse)};
 }
 
 void provoke(const EffectExample& at) {

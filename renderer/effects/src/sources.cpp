@@ -13,9 +13,24 @@ std::string shortest(Number value) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
-std::string quoted(const Material& material) { return "material `" + material.name + "`: "; }
+/// At most kMostOfName bytes of the name, cut between characters of UTF-8.
+std::string quoted(const Material& material) {
+  constexpr std::size_t kMostOfName = 60;
+  std::size_t size = std::min(material.name.size(), kMostOfName);
+  const auto inside = [&](std::size_t i) {
+    return i < material.name.size() && (static_cast<unsigned char>(material.name[i]) & 0xC0U) == 0x80U;
+  };
+  while (size > 0 && inside(size)) --size;
+  const char* more = size < material.name.size() ? "..." : "";
+  return "material `" + material.name.substr(0, size) + more + "`: ";
+}
 
 }  // namespace
+
+std::string named(const Material& material) {
+  const std::string text = quoted(material);
+  return text.substr(0, text.size() - 2);
+}
 
 bool is_black(const Rgb& c) { return !(c.x > 0.0F || c.y > 0.0F || c.z > 0.0F); }
 

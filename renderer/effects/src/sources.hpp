@@ -7,8 +7,6 @@
 
 namespace raykiln::render {
 
-/// Lobes at least this sharp count as mirrors, broader ones as gloss.
-inline constexpr double kMirrorExponent = 1e8;
 [[nodiscard]] inline bool is_sharp(const Material& m) { return m.specular_exp >= kMirrorExponent; }
 
 [[nodiscard]] bool is_black(const Rgb& c);  ///< no channel above 0
@@ -36,6 +34,8 @@ const Material* find_material(const EffectView& view, Predicate&& holds) {
 /// background where a further ray finds them.
 [[nodiscard]] bool reaches_two_surfaces(const EffectView& view);
 
+/// "material `glass`", its name cut to 60 bytes.
+[[nodiscard]] std::string named(const Material& material);
 /// "material `glass`: transparent 1"
 [[nodiscard]] std::string says(const Material& material, const char* field, double value);
 [[nodiscard]] std::string says(const Material& material, const char* field, const Rgb& value);

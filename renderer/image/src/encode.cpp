@@ -64,7 +64,8 @@ std::variant<Bytes, EncodeError> encode_linear(
 
 }  // namespace
 
-std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops) {
+std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops,
+                                            const std::string& note) {
   if (!consistent(image)) return EncodeError{"the picture has no pixels"};
   const double gain = std::exp2(exposure_stops);
   std::vector<std::uint8_t> display(image.rgb.size());
@@ -72,6 +73,7 @@ std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_
                  [gain](float x) { return display_byte(gain * static_cast<double>(x)); });
   OIIO::ImageSpec spec = rgb_spec(image, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  if (!note.empty()) spec.attribute("ImageDescription", note);
   return encode("a.png", spec, OIIO::TypeDesc::UINT8, display.data());
 }
 

@@ -15,10 +15,11 @@ struct PathState {
   Rgbd throughput{1.0};
   /// What of the throughput is no loss: changes of medium, and one over the rays shot with it.
   double scale = 1.0;
-  double pdf = 0.0;        ///< of the ray's direction times the rays shot with it, sr^-1
-  std::uint64_t node = 0;  ///< number of the branch among those of its bounce
-  std::uint32_t slot = 0;  ///< index of its PathResult
-  std::uint32_t bounce = 0;  ///< reflections so far
+  double pdf = 0.0;          ///< of the ray's direction times the rays shot with it, sr^-1
+  std::uint64_t node = 0;    ///< number of the branch among those of its bounce
+  std::uint32_t slot = 0;    ///< index of its PathResult
+  std::uint16_t bounce = 0;  ///< reflections so far
+  bool met_diffuse = false;  ///< one of them was diffuse; kept where caustics are left out alone
 };
 
 struct PathStream {

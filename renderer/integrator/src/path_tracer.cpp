@@ -11,9 +11,9 @@
 namespace raykiln::render {
 namespace {
 
-constexpr std::size_t kStreamPaths = 4096;  ///< paths kept under way while there are so many
+constexpr std::size_t kStreamPaths = 4096;      ///< paths kept under way while there are so many
 constexpr std::size_t kMostBranchRays = 65536;  ///< rays of one bounce, all branches together
-constexpr std::size_t kManyRays = 1024;     ///< what a call into the tree should bring
+constexpr std::size_t kManyRays = 1024;         ///< what a call into the tree should bring
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -62,6 +62,8 @@ double rays_of_one_path(int branches, int max_depth) {
 }
 
 struct PathTracer::Scratch {
+  Transport transport;
+  ShadeRange shade;  ///< the instance of the shading loop for what is simulated
   PathStream front;  ///< paths whose rays are traced next
   PathStream next;   ///< their continuations
   std::vector<Hit> hits;
@@ -79,24 +81,28 @@ struct PathTracer::Call {
 
 PathTracer::PathTracer(const TransportScene& scene, const CameraRays& camera,
                        const PathSettings& settings)
-    : scene_(scene), camera_(camera), settings_(settings), scratch_(std::make_unique<Scratch>()) {}
+    : camera_(camera) {
+  const Transport transport = make_transport(scene, settings);
+  scratch_.reset(new Scratch{transport, shading_loop(switches_for(transport)), {}, {}, {}, {}});
+}
 
 PathTracer::~PathTracer() = default;
 
 void PathTracer::admit(Call& call) {
   PathStream& front = scratch_->front;
-  if (settings_.branches > 1 && front.size() > 0) return;
-  const double widest = widest_level(settings_.branches, settings_.max_depth);
-  const auto room = static_cast<std::size_t>(std::clamp(static_cast<double>(kMostBranchRays) / widest,
-                                                        1.0, static_cast<double>(kStreamPaths)));
+  const PathSettings& settings = scratch_->transport.settings;
+  if (settings.branches > 1 && front.size() > 0) return;
+  const double widest = widest_level(settings.branches, settings.max_depth);
+  const auto room = static_cast<std::size_t>(std::clamp(
+      static_cast<double>(kMostBranchRays) / widest, 1.0, static_cast<double>(kStreamPaths)));
   for (; call.started < call.starts.size() && front.size() < room; ++call.started) {
     const PathStart& start = call.starts[call.started];
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(start.y) << 32) | static_cast<std::uint32_t>(start.x);
     PathState state;
-    state.key = path_key(settings_.seed, pixel, start.sample);
+    state.key = path_key(settings.seed, pixel, start.sample);
     state.slot = static_cast<std::uint32_t>(call.started);
-    front.push(camera_.ray(start.x, start.y, settings_.pixel_mode, vertex_key(state.key, 0, 0)),
+    front.push(camera_.ray(start.x, start.y, settings.pixel_mode, vertex_key(state.key, 0, 0)),
                state);
   }
 }
@@ -107,7 +113,8 @@ void PathTracer::advance(Call& call, std::size_t begin, std::size_t end) {
   const std::span<const Ray> rays(front.rays.data() + begin, end - begin);
   scratch.hits.resize(rays.size());
   const Clock::time_point start = Clock::now();
-  closest_hits(scene_.tree, rays, scratch.hits, {}, settings_.traversal, &call.stats.traversal);
+  closest_hits(scratch.transport.tree, rays, scratch.hits, {}, scratch.transport.settings.traversal,
+               &call.stats.traversal);
   call.stats.traversal_seconds += seconds_since(start);
   call.stats.closest_calls += 1;
   call.stats.short_calls_while_many_live += rays.size() < kManyRays && front.size() >= kManyRays;
@@ -116,18 +123,14 @@ void PathTracer::advance(Call& call, std::size_t begin, std::size_t end) {
 
 void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
   Scratch& scratch = *scratch_;
-  const PathStream& front = scratch.front;
   RenderStats& stats = call.stats;
   const Clock::time_point start = Clock::now();
   const double traversal_before = stats.traversal_seconds;
   ShadingSinks sinks{call.results, scratch.shadows, scratch.next, stats, call.stop};
-  for (std::size_t i = begin; i < end && !sinks.stopped; ++i) {
-    (front.states[i].bounce == 0 ? stats.camera_rays : stats.bounce_rays) += 1;
-    shade_vertex(scene_, settings_, front.rays[i], front.states[i], scratch.hits[i - begin], sinks);
-  }
-  scratch.shadows.flush(scene_.tree, settings_.traversal, call.results, stats);
-  stats.shading_seconds +=
-      seconds_since(start) - (stats.traversal_seconds - traversal_before);
+  scratch.shade(scratch.transport, {scratch.front, scratch.hits, begin, end}, sinks);
+  scratch.shadows.flush(scratch.transport.tree, scratch.transport.settings.traversal, call.results,
+                        stats);
+  stats.shading_seconds += seconds_since(start) - (stats.traversal_seconds - traversal_before);
 }
 
 // Paths are a queue: continuations go to its end and new starts behind them, so the contributions
@@ -139,8 +142,8 @@ bool PathTracer::trace(std::span<const PathStart> starts, std::span<PathResult> 
   scratch.front.clear();
   scratch.shadows.clear();
   std::fill(results.begin(), results.end(), PathResult{});
-  if (bounds(scene_.tree).empty()) {
-    fill_with_background(results, scene_.scene.background);
+  if (bounds(scratch.transport.tree).empty() || !scratch.transport.has_light) {
+    fill_with_background(results, scratch.transport.background);
     stats.paths += starts.size();
     return !stop.stop_requested();
   }

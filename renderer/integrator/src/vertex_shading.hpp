@@ -1,12 +1,12 @@
-// What happens where a path meets a surface: light found, shadow rays asked for, new rays shot.
+// What happens where paths meet surfaces: light found, shadow rays asked for, new rays shot.
 #pragma once
 
 #include <span>
 #include <stop_token>
 
 #include "path_stream.hpp"
-#include "raykiln/integrator/path_tracer.hpp"
 #include "shadow_queue.hpp"
+#include "transport.hpp"
 
 namespace raykiln::render {
 
@@ -20,9 +20,25 @@ struct ShadingSinks {
   bool stopped = false;  ///< stop was seen: the outcome is worthless, return soon
 };
 
-/// Handles one path whose ray came back with `hit`. Light samples are queued; the queue is flushed
-/// here when it is full.
-void shade_vertex(const TransportScene& scene, const PathSettings& settings, const Ray& ray,
-                  const PathState& state, const Hit& hit, ShadingSinks& sinks);
+/// Paths `begin` .. `end` of `front`, whose rays came back with `hits`. Light samples are queued;
+/// the queue is flushed on the way when it is full.
+struct ShadingRange {
+  const PathStream& front;
+  std::span<const Hit> hits;
+  std::size_t begin = 0, end = 0;
+};
+using ShadeRange = void (*)(const Transport&, const ShadingRange&, ShadingSinks&);
+
+/// The instance of the loop that is made for these switches. Chosen once a tile.
+[[nodiscard]] ShadeRange shading_loop(const Switches& switches);
+
+// The instances, each compiled by itself.
+void shade_general(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
+void shade_reduced(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
+void shade_opaque(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
+void shade_matte(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
+void shade_flat_matte(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
+void shade_direct_flat_matte(const Transport& transport, const ShadingRange& range,
+                             ShadingSinks& sinks);
 
 }  // namespace raykiln::render

@@ -82,7 +82,7 @@ TileResult render_tile(const PreparedScene& scene, const RenderSettings& setting
   if (rect.width() <= 0 || rect.height() <= 0) return result;
   const CameraRays camera = camera_rays(scene, settings);
   PathTracer tracer({scene.scene(), scene.tree(), scene.emitters()}, camera,
-                    path_settings(settings));
+                    path_settings(scene, settings));
   std::vector<TaskOrder::Item> items;
   std::vector<PathStart> starts;
   std::vector<PathResult> paths;

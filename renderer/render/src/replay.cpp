@@ -8,7 +8,7 @@ ReplayedSample replay_sample(const PreparedScene& scene, const RenderSettings& s
                              int y, std::uint64_t sample) {
   const CameraRays camera = camera_rays(scene, settings);
   PathTracer tracer({scene.scene(), scene.tree(), scene.emitters()}, camera,
-                    path_settings(settings));
+                    path_settings(scene, settings));
   const PathStart start{x, y, sample};
   PathResult path;
   ReplayedSample result;

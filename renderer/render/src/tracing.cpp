@@ -2,7 +2,26 @@
 
 namespace raykiln::render {
 
-PathSettings path_settings(const RenderSettings& settings) {
+namespace {
+
+EffectPlan plan_of(const RenderSettings& settings, const Scene& scene, const SceneUse& use) {
+  const EffectJob job{.light_model = settings.light_model,
+                      .max_depth = path_limit(settings),
+                      .emitter_sampling = settings.emitter_sampling};
+  return plan_effects(scene, use, job, settings.effects);
+}
+
+}  // namespace
+
+EffectPlan effect_plan(const RenderSettings& settings, const Scene& scene) {
+  return plan_of(settings, scene, use_of(scene));
+}
+
+EffectPlan effect_plan(const RenderSettings& settings, const PreparedScene& scene) {
+  return plan_of(settings, scene.scene(), scene.use());
+}
+
+PathSettings path_settings(const PreparedScene& scene, const RenderSettings& settings) {
   PathSettings path;
   path.seed = settings.seed;
   path.max_depth = path_limit(settings);
@@ -12,6 +31,9 @@ PathSettings path_settings(const RenderSettings& settings) {
   path.bsdf.direction_sampling = settings.direction_sampling;
   path.bsdf.light = settings.light_model;
   path.traversal = settings.traversal;
+  const EffectPlan plan = effect_plan(settings, scene);
+  path.simulated = plan.simulated;
+  path.left_out = plan.approximated();
   return path;
 }
 

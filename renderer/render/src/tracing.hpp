@@ -7,7 +7,8 @@
 
 namespace raykiln::render {
 
-[[nodiscard]] PathSettings path_settings(const RenderSettings& settings);
+[[nodiscard]] PathSettings path_settings(const PreparedScene& scene,
+                                         const RenderSettings& settings);
 [[nodiscard]] CameraRays camera_rays(const PreparedScene& scene, const RenderSettings& settings);
 
 }  // namespace raykiln::render

@@ -9,6 +9,9 @@
 namespace raykiln::render {
 namespace {
 
+/// Whether there may be a border and a far side; false is OpaqueBsdf.
+enum class Sides : bool { kNear, kBoth };
+
 /// The largest channel and not luminance: permuting the channels must not change a choice.
 double largest(const Rgbd& c) { return std::max({c.x, c.y, c.z, 0.0}); }
 
@@ -47,23 +50,26 @@ double diffuse_pdf(const Bsdf& b, double cosine) {
 
 /// Value on the side of wo: diffuse + (opaque + transparent F(theta_i)) f_ph, f_ph over cos_o or
 /// max(cos_i, cos_o). `cosine` is n.wi.
+template <Sides kSides>
 BsdfValue evaluate_same_side(const Bsdf& b, double cosine, double x_specular) {
   const double cos_i = std::max(cosine, 0.0);
-  const double lobe =
-      b.choice.specular > 0.0 ? cosine_power_pdf(x_specular, b.exponent) : 0.0;
+  const double lobe = b.choice.specular > 0.0 ? cosine_power_pdf(x_specular, b.exponent) : 0.0;
   Rgbd f = b.diffuse_same;
   if (lobe > 0.0) {
-    const double reflectance = fresnel(b.model.light.fresnel, cos_i, b.eta_o, b.eta_t).reflectance;
-    f += (b.specular_opaque + b.specular_transparent * reflectance) *
-         (lobe / phong_divisor(b, cos_i, b.cos_o));
+    Rgbd specular = b.specular_opaque;
+    if constexpr (kSides == Sides::kBoth) {
+      specular += b.specular_transparent *
+                  fresnel(b.model.light.fresnel, cos_i, b.eta_o, b.eta_t).reflectance;
+    }
+    f += specular * (lobe / phong_divisor(b, cos_i, b.cos_o));
   }
   const double diffuse =
       (1.0 - b.choice.specular) * (1.0 - b.choice.diffuse_through) * diffuse_pdf(b, cosine);
   return {f * cos_i, diffuse + b.choice.specular * (1.0 - b.choice.specular_through) * lobe};
 }
 
-/// Value on the other side: diffuse + transparent (1 - F(theta_i)) f_ph(wi, refract(wo)), the latter
-/// scaled by the change of medium. `cosine` is -n.wi.
+/// Value on the other side: diffuse + transparent (1 - F(theta_i)) f_ph(wi, refract(wo)), the
+/// latter scaled by the change of medium. `cosine` is -n.wi.
 BsdfValue evaluate_other_side(const Bsdf& b, double cosine, double x_specular) {
   const double cos_i = std::max(cosine, 0.0);
   const bool refracts = b.choice.specular * b.choice.specular_through > 0.0 && b.cos_t > 0.0;
@@ -80,16 +86,21 @@ BsdfValue evaluate_other_side(const Bsdf& b, double cosine, double x_specular) {
 }
 
 /// `sampled_x` is the exact 1 - cos of a specular sample, or negative: then it is measured.
+template <Sides kSides>
 BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, double sampled_x) {
   if (b.black) return {};
   const double side = dot(Vec3d(b.ng), Vec3d(wi));
+  if constexpr (kSides == Sides::kNear) {
+    const bool far = side <= 0.0 && b.model.direction_sampling == DirectionSampling::kBsdf;
+    if (far) return {};
+  }
   const double cosine = std::clamp(dot(Vec3d(b.n), Vec3d(wi)), -1.0, 1.0);
   const Vec3f& axis = side > 0.0 ? b.mirror : b.refracted;
   const double x = sampled_x >= 0.0 ? sampled_x : one_minus_cos(axis, wi);
   BsdfValue value;
   if (side > 0.0) {
-    value = evaluate_same_side(b, cosine, x);
-  } else if (side < 0.0) {
+    value = evaluate_same_side<kSides>(b, cosine, x);
+  } else if (kSides == Sides::kBoth && side < 0.0) {
     value = evaluate_other_side(b, -cosine, x);
   }
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
@@ -98,11 +109,12 @@ BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, double sampled_x) {
   return value;
 }
 
+template <Sides kSides>
 BsdfSample finish(const Bsdf& b, const Vec3f& wi, Lobe lobe, bool through, double sampled_x) {
   // The part of a lobe that reaches beyond its own side of the surface is lost, not reflected.
   const double side = dot(Vec3d(b.ng), Vec3d(wi));
   if (lobe != Lobe::kNone && (through ? side >= 0.0 : side <= 0.0)) return {};
-  const BsdfValue value = evaluate_with(b, wi, sampled_x);
+  const BsdfValue value = evaluate_with<kSides>(b, wi, sampled_x);
   if (value.f_cos == Rgbd(0.0)) return {};
   return {.wi = wi,
           .weight = value.f_cos / value.pdf,
@@ -111,11 +123,23 @@ BsdfSample finish(const Bsdf& b, const Vec3f& wi, Lobe lobe, bool through, doubl
           .radiance_scale = lobe == Lobe::kSpecular && through ? b.radiance_scale : 1.0};
 }
 
-}  // namespace
+/// What differs with the direction of view at a border; the rest of Bsdf is set.
+void cross_border(Bsdf& b, const Material& material, const Vec3f& wo) {
+  const FresnelTerm border = fresnel(b.model.light.fresnel, b.cos_o, b.eta_o, b.eta_t);
+  b.cos_t = border.cos_t;
+  if (!border.total_reflection) {
+    b.refracted = Vec3f(refract(Vec3d(wo), Vec3d(b.n), b.cos_o, b.cos_t, b.eta_o, b.eta_t));
+  }
+  if (b.model.light.radiance_scaling) {
+    const double ratio = b.eta_o / b.eta_t;
+    b.radiance_scale = ratio * ratio;
+  }
+  b.choice = choose_lobes(material, reflected_share(border, b.exponent));
+}
 
-Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns, const Vec3f& wo,
-               const BsdfModel& model) {
-  Bsdf b;
+template <Sides kSides>
+void make(Bsdf& b, const Material& material, const Vec3f& ng, const Vec3f& ns, const Vec3f& wo,
+          const BsdfModel& model) {
   b.model = model;
   const bool front = dot(Vec3d(ng), Vec3d(wo)) >= 0.0;
   b.ng = front ? ng : -ng;
@@ -139,48 +163,74 @@ Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns, const
 
   const Vec3d n(b.n), w(wo);
   b.mirror = Vec3f(normalize(2.0 * b.cos_o * n - w));
-  const FresnelTerm border = fresnel(model.light.fresnel, b.cos_o, b.eta_o, b.eta_t);
-  b.cos_t = border.cos_t;
-  if (!border.total_reflection) {
-    b.refracted = Vec3f(refract(w, n, b.cos_o, b.cos_t, b.eta_o, b.eta_t));
+  if constexpr (kSides == Sides::kBoth) {
+    cross_border(b, material, wo);
+  } else {
+    b.choice = choose_lobes(material, 1.0);
   }
-  if (model.light.radiance_scaling) {
-    const double ratio = b.eta_o / b.eta_t;
-    b.radiance_scale = ratio * ratio;
-  }
-  b.choice = choose_lobes(material, reflected_share(border, b.exponent));
-  return b;
 }
 
-BsdfValue evaluate(const Bsdf& bsdf, const Vec3f& wi) { return evaluate_with(bsdf, wi, -1.0); }
-
-BsdfSample sample_bsdf(const Bsdf& b, const DirectionNumbers& numbers) {
+template <Sides kSides>
+BsdfSample sample(const Bsdf& b, const DirectionNumbers& numbers) {
   if (b.black) return {};
   const auto& [lobe, side, u, v] = numbers;
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
-    BsdfSample sample = finish(b, sample_uniform_sphere(u, v), Lobe::kNone, false, -1.0);
-    if (sample.pdf > 0.0) sample.lobe = Lobe::kDiffuse;
-    return sample;
+    BsdfSample found = finish<kSides>(b, sample_uniform_sphere(u, v), Lobe::kNone, false, -1.0);
+    if (found.pdf > 0.0) found.lobe = Lobe::kDiffuse;
+    return found;
   }
   const bool specular = lobe < b.choice.specular;
   const double through_share = specular ? b.choice.specular_through : b.choice.diffuse_through;
   const bool through = side < through_share;
   if (specular) {
     const double x = sample_one_minus_cos(u, b.exponent);
-    return finish(b, around_axis(through ? b.refracted : b.mirror, x, v), Lobe::kSpecular, through,
-                  x);
+    return finish<kSides>(b, around_axis(through ? b.refracted : b.mirror, x, v), Lobe::kSpecular,
+                          through, x);
   }
   const double x = b.model.light.diffuse_sampling == DiffuseSampling::kCosine
                        ? sample_cosine_one_minus_cos(u)
                        : sample_one_minus_cos(u, 0.0);
-  return finish(b, around_axis(through ? -b.n : b.n, x, v), Lobe::kDiffuse, through, -1.0);
+  return finish<kSides>(b, around_axis(through ? -b.n : b.n, x, v), Lobe::kDiffuse, through, -1.0);
 }
 
+DirectionNumbers numbers_of(const VertexKey& vertex) {
+  return {.lobe = uniform(vertex, Dimension::kLobeChoice),
+          .side = uniform(vertex, Dimension::kFresnelChoice),
+          .u = uniform(vertex, Dimension::kDirectionU),
+          .v = uniform(vertex, Dimension::kDirectionV)};
+}
+
+}  // namespace
+
+Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns, const Vec3f& wo,
+               const BsdfModel& model) {
+  Bsdf b;
+  make<Sides::kBoth>(b, material, ng, ns, wo, model);
+  return b;
+}
+
+OpaqueBsdf make_opaque_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns,
+                            const Vec3f& wo, const BsdfModel& model) {
+  OpaqueBsdf b;
+  make<Sides::kNear>(b, material, ng, ns, wo, model);
+  return b;
+}
+
+BsdfValue evaluate(const Bsdf& b, const Vec3f& wi) {
+  return evaluate_with<Sides::kBoth>(b, wi, -1.0);
+}
+BsdfValue evaluate(const OpaqueBsdf& b, const Vec3f& wi) {
+  return evaluate_with<Sides::kNear>(b, wi, -1.0);
+}
+
+BsdfSample sample_bsdf(const Bsdf& b, const DirectionNumbers& numbers) {
+  return sample<Sides::kBoth>(b, numbers);
+}
 BsdfSample sample_bsdf(const Bsdf& b, const VertexKey& vertex) {
-  return sample_bsdf(b, DirectionNumbers{.lobe = uniform(vertex, Dimension::kLobeChoice),
-                                         .side = uniform(vertex, Dimension::kFresnelChoice),
-                                         .u = uniform(vertex, Dimension::kDirectionU),
-                                         .v = uniform(vertex, Dimension::kDirectionV)});
+  return sample<Sides::kBoth>(b, numbers_of(vertex));
+}
+BsdfSample sample_bsdf(const OpaqueBsdf& b, const VertexKey& vertex) {
+  return sample<Sides::kNear>(b, numbers_of(vertex));
 }
 
 }  // namespace raykiln::render

@@ -45,6 +45,11 @@ FresnelTerm fresnel_schlick(double cos_from, double eta_from, double eta_to) {
           .total_reflection = false};
 }
 
+FresnelTerm fresnel_none(double cos_from, double eta_from, double eta_to) {
+  if (eta_from == eta_to) return {.reflectance = 0.0, .cos_t = cos_from, .total_reflection = false};
+  return cross_border(cos_from, eta_from, eta_to);
+}
+
 Vec3d refract(const Vec3d& w, const Vec3d& n, double cos_from, double cos_t, double eta_from,
               double eta_to) {
   const double ratio = eta_from / eta_to;

@@ -8,11 +8,20 @@ namespace {
 
 using Switches = std::array<std::string, 5>;
 
+std::string formula(FresnelFormula value) {
+  switch (value) {
+    case FresnelFormula::kExact: return "exact";
+    case FresnelFormula::kSchlick: return "schlick";
+    case FresnelFormula::kNone: break;
+  }
+  return "none";
+}
+
 std::string onoff(bool value) { return value ? "true" : "false"; }
 
 Switches switches(const LightModel& m) {
   return {std::string("phong=") + (m.phong == PhongCosine::kMax ? "max" : "over_cos_o"),
-          std::string("fresnel=") + (m.fresnel == FresnelFormula::kExact ? "exact" : "schlick"),
+          "fresnel=" + formula(m.fresnel),
           "radiance_scaling=" + onoff(m.radiance_scaling),
           std::string("diffuse_sampling=") +
               (m.diffuse_sampling == DiffuseSampling::kCosine ? "cosine" : "uniform"),

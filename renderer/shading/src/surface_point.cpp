@@ -69,7 +69,8 @@ Vec3f lifted(const SurfacePoint& point, double height) {
 // what float barycentrics and rounding do to it (Pharr, Jakob & Humphreys 2023, section 6.8.4).
 // And the test of the own triangle against the new ray: the sheared differences p_i - o carry
 // gamma_4 of the largest of them, which the first term misses where the coordinates are near 0.
-SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u, double v) {
+SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u, double v,
+                           bool normals) {
   const auto& corner = mesh.triangles[id];
   const std::array<Vec3d, 3> p{Vec3d(mesh.positions[corner[0]]), Vec3d(mesh.positions[corner[1]]),
                                Vec3d(mesh.positions[corner[2]])};
@@ -79,7 +80,8 @@ SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u,
   const Vec3d normal = cross(p[1] - p[0], p[2] - p[0]);
   const double twice_area = length(normal);
   point.ng = normal / twice_area;
-  point.ns = interpolated_normal(mesh, id, u, v, Vec3f(point.ng));
+  const Vec3f ng(point.ng);
+  point.ns = normals ? interpolated_normal(mesh, id, u, v, ng) : ng;
   point.material = mesh.material_ids[id];
 
   const Vec3d bound =

@@ -10,6 +10,9 @@
 
 namespace raykiln::render {
 
+/// Lobes at least this sharp count as mirrors, broader ones as gloss.
+inline constexpr double kMirrorExponent = 1e8;
+
 /// What leaving an effect out does to the picture.
 enum class Grade : std::uint8_t {
   kIdentical,  ///< not a bit of any plane of the film changes

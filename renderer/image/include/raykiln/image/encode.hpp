@@ -17,7 +17,9 @@ struct EncodeError {
 };
 
 /// 8-bit sRGB PNG of exposure 2^stops times the picture, clipped to [0, 1] (NaN shows as black).
-[[nodiscard]] std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops);
+/// `note` becomes the text chunk "Description", if it is not empty.
+[[nodiscard]] std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops,
+                                                          const std::string& note = {});
 
 /// Linear float32 EXR with the given string attributes.
 [[nodiscard]] std::variant<Bytes, EncodeError> encode_exr(

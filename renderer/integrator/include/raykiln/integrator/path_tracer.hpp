@@ -7,6 +7,7 @@
 #include <stop_token>
 
 #include "raykiln/accel/kdtree.hpp"
+#include "raykiln/effects/effect.hpp"
 #include "raykiln/integrator/camera_ray.hpp"
 #include "raykiln/integrator/render_stats.hpp"
 #include "raykiln/scene/scene.hpp"
@@ -30,6 +31,9 @@ struct PathSettings {
   bool emitter_sampling = true;
   BsdfModel bsdf;
   Traversal traversal = Traversal::kTree;
+  /// What is to be simulated. Precondition: what is missing here is not called for, or in left_out.
+  EffectSet simulated = EffectSet::everything();
+  EffectSet left_out{};  ///< not simulated although the scene calls for it
 };
 
 /// Pixel and sample index: with the seed, all that the numbers of a path depend on.
@@ -70,9 +74,7 @@ class PathTracer {
   void admit(Call& call);  ///< shoots camera rays while there is room under way
   void advance(Call& call, std::size_t begin, std::size_t end);  ///< one reflection of these paths
   void shade(Call& call, std::size_t begin, std::size_t end);
-  TransportScene scene_;
   CameraRays camera_;
-  PathSettings settings_;
   std::unique_ptr<Scratch> scratch_;
 };
 

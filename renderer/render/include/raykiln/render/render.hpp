@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "raykiln/accel/kdtree.hpp"
+#include "raykiln/effects/effect_plan.hpp"
 #include "raykiln/image/film.hpp"
 #include "raykiln/integrator/camera_ray.hpp"    // PixelMode
 #include "raykiln/integrator/render_stats.hpp"  // RenderStats
@@ -32,6 +33,7 @@ struct RenderSettings {
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;  ///< with multiple importance sampling
   Traversal traversal = Traversal::kTree;
+  EffectChoice effects{};        ///< kAuto and kAll give the same bytes
 };
 
 /// Limits that settings_error() checks.
@@ -62,11 +64,15 @@ struct LightModelWarning {
 [[nodiscard]] std::vector<LightModelWarning> light_model_warnings(const LightModel& model,
                                                                   const Scene& scene);
 
+/// Which effects these settings simulate in this scene, and why. The first walks all triangles.
+[[nodiscard]] EffectPlan effect_plan(const RenderSettings& settings, const Scene& scene);
+
 /// Scene and tree with what shading needs beside them (emitter distribution, ...). Immutable; shared
 /// by all threads.
 class PreparedScene;
 [[nodiscard]] std::shared_ptr<const PreparedScene> prepare(std::shared_ptr<const Scene> scene,
                                                            std::shared_ptr<const KdTree> tree);
+[[nodiscard]] EffectPlan effect_plan(const RenderSettings& settings, const PreparedScene& scene);
 
 /// The builder's view of a scene's triangles (spans into `scene`) and the tree for it; null if stopped.
 [[nodiscard]] std::shared_ptr<const KdTree> build_scene_tree(const Scene& scene,

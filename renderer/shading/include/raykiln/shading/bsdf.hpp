@@ -47,6 +47,10 @@ struct Bsdf {
   bool black = true;       ///< reflects and transmits nothing
 };
 
+/// The same for a material of transparent 0: no border, no far side. Members about them are unset.
+/// Values, directions and densities are those of Bsdf, bit for bit.
+struct OpaqueBsdf : Bsdf {};
+
 /// f times |cos theta_i|, and the density over solid angle with which sample_bsdf finds wi.
 struct BsdfValue {
   Rgbd f_cos{0.0};
@@ -68,7 +72,12 @@ struct BsdfSample {
 [[nodiscard]] Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns,
                              const Vec3f& wo, const BsdfModel& model);
 
+/// Precondition: material.transparent is 0.
+[[nodiscard]] OpaqueBsdf make_opaque_bsdf(const Material& material, const Vec3f& ng,
+                                          const Vec3f& ns, const Vec3f& wo, const BsdfModel& model);
+
 [[nodiscard]] BsdfValue evaluate(const Bsdf& bsdf, const Vec3f& wi);
+[[nodiscard]] BsdfValue evaluate(const OpaqueBsdf& bsdf, const Vec3f& wi);
 
 /// The numbers in [0, 1) that a direction takes.
 struct DirectionNumbers {
@@ -78,5 +87,6 @@ struct DirectionNumbers {
 
 /// With dimensions kLobeChoice, kFresnelChoice, kDirectionU and kDirectionV of the vertex.
 [[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const VertexKey& vertex);
+[[nodiscard]] BsdfSample sample_bsdf(const OpaqueBsdf& bsdf, const VertexKey& vertex);
 
 }  // namespace raykiln::render

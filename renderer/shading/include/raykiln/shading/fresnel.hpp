@@ -22,10 +22,14 @@ struct FresnelTerm {
 /// the critical angle.
 [[nodiscard]] FresnelTerm fresnel_schlick(double cos_from, double eta_from, double eta_to);
 
+/// Total internal reflection alone. Equal indices reflect nothing at any angle.
+[[nodiscard]] FresnelTerm fresnel_none(double cos_from, double eta_from, double eta_to);
+
 [[nodiscard]] inline FresnelTerm fresnel(FresnelFormula formula, double cos_from, double eta_from,
                                          double eta_to) {
-  return formula == FresnelFormula::kExact ? fresnel_exact(cos_from, eta_from, eta_to)
-                                           : fresnel_schlick(cos_from, eta_from, eta_to);
+  if (formula == FresnelFormula::kExact) return fresnel_exact(cos_from, eta_from, eta_to);
+  if (formula == FresnelFormula::kSchlick) return fresnel_schlick(cos_from, eta_from, eta_to);
+  return fresnel_none(cos_from, eta_from, eta_to);
 }
 
 /// Direction on the other side of `n` (unit, on the side of `w`) for light leaving along `w`

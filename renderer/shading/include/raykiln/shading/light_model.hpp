@@ -14,7 +14,11 @@ enum class PhongCosine : std::uint8_t {
 };
 
 /// Reflectance of a border between two media, for light without polarisation.
-enum class FresnelFormula : std::uint8_t { kExact, kSchlick };
+enum class FresnelFormula : std::uint8_t {
+  kExact,
+  kSchlick,
+  kNone,  ///< 0 below the critical angle: an approximation that no model has by itself
+};
 
 /// Density of diffuse directions about the normal; the estimate is the same, its noise is not.
 enum class DiffuseSampling : std::uint8_t { kCosine, kUniform };

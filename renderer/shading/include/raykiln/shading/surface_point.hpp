@@ -17,9 +17,9 @@ struct SurfacePoint {
   std::uint32_t material = 0;
 };
 
-/// Point (1 - u - v) p0 + u p1 + v p2 of triangle `id`.
+/// Point (1 - u - v) p0 + u p1 + v p2 of triangle `id`. Without `normals`, ns is ng.
 [[nodiscard]] SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u,
-                                         double v);
+                                         double v, bool normals = true);
 
 /// Origin of a ray that leaves `point` towards `direction`: moved along the geometric normal by
 /// the clearance, to the side of the direction, away from near edges, and rounded outwards. No absolute length enters,

@@ -1,0 +1,45 @@
+#include "leave_out.hpp"
+
+#include <algorithm>
+
+#include "raykiln/effects/effect_row.hpp"
+
+namespace raykiln::render {
+namespace {
+
+double largest(const Rgb& c) { return static_cast<double>(std::max({c.x, c.y, c.z, 0.0F})); }
+
+void leave_out_diffuse(Bsdf& b, EffectSet effects) {
+  if (effects.contains(Effect::kDiffuseReflection)) {
+    b.diffuse_same = Rgbd(0.0);
+    b.choice.diffuse_through = 1.0;
+  }
+  if (effects.contains(Effect::kDiffuseTransmission)) {
+    b.diffuse_through = Rgbd(0.0);
+    b.choice.diffuse_through = 0.0;
+  }
+}
+
+void leave_out_specular(Bsdf& b, const Material& material, EffectSet effects, bool all) {
+  const bool sharp = material.specular_exp >= kMirrorExponent;
+  const bool gloss = !sharp && effects.contains(Effect::kGlossyLobes);
+  if (all || gloss || (sharp && effects.contains(Effect::kMirrors))) b.specular_opaque = Rgbd(0.0);
+  if (all || gloss) b.specular_transparent = Rgbd(0.0);
+  if (effects.contains(Effect::kRefraction)) b.choice.specular_through = 0.0;
+}
+
+}  // namespace
+
+void leave_out(Bsdf& b, const Material& material, EffectSet effects, bool all_specular) {
+  leave_out_diffuse(b, effects);
+  leave_out_specular(b, material, effects, all_specular);
+  const Rgbd zero(0.0);
+  const bool has_diffuse = b.diffuse_same != zero || b.diffuse_through != zero;
+  const bool has_specular = b.specular_opaque != zero || b.specular_transparent != zero;
+  const double diffuse = has_diffuse ? largest(material.diffuse) : 0.0;
+  const double specular = has_specular ? largest(material.specular) : 0.0;
+  b.black = !(diffuse + specular > 0.0);
+  b.choice.specular = b.black ? 0.0 : specular / (diffuse + specular);
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,56 @@
+#include "transport.hpp"
+
+#include <algorithm>
+
+namespace raykiln::render {
+namespace {
+
+constexpr EffectSet kSources{Effect::kPointLights, Effect::kAreaEmitters, Effect::kBackground};
+
+/// Effects that are no more than a value in the settings or the data.
+constexpr EffectSet kFolded{Effect::kPointLights, Effect::kEmitterSampling, Effect::kBackground,
+                            Effect::kFresnel,     Effect::kShadingNormals,  Effect::kRoulette};
+
+PathSettings folded(PathSettings s, const Emitters& emitters) {
+  const EffectSet simulated = s.simulated;
+  s.emitter_sampling = s.emitter_sampling && emitters.has_triangles() &&
+                       simulated.contains(Effect::kEmitterSampling);
+  s.bsdf.light.roulette = s.bsdf.light.roulette && simulated.contains(Effect::kRoulette);
+  if (!simulated.contains(Effect::kFresnel)) s.bsdf.light.fresnel = FresnelFormula::kNone;
+  if (s.left_out.contains(Effect::kIndirectLight)) s.max_depth = std::min(s.max_depth, 1);
+  return s;
+}
+
+}  // namespace
+
+Transport make_transport(const TransportScene& scene, const PathSettings& settings) {
+  const EffectSet simulated = settings.simulated;
+  const Scene& s = scene.scene;
+  Transport t{.scene = s,
+              .mesh = s.mesh,
+              .tree = scene.tree,
+              .emitters = scene.emitters,
+              .point_lights = scene.emitters.point_lights(),
+              .background = s.background,
+              .normals = simulated.contains(Effect::kShadingNormals),
+              .settings = folded(settings, scene.emitters)};
+  if (!simulated.contains(Effect::kPointLights)) t.point_lights = {};
+  if (!simulated.contains(Effect::kBackground)) t.background = Rgb(0.0F);
+  t.has_light =
+      simulated.contains_any(kSources) &&
+      (!t.point_lights.empty() || t.background != Rgb(0.0F) || scene.emitters.has_triangles());
+  return t;
+}
+
+Switches switches_for(const Transport& transport) {
+  const PathSettings& s = transport.settings;
+  if (!(s.left_out - kFolded).empty()) return kReduced;
+  const bool transmits =
+      s.simulated.contains_any({Effect::kDiffuseTransmission, Effect::kRefraction});
+  if (transmits || s.bsdf.direction_sampling != DirectionSampling::kBsdf) return kGeneral;
+  if (s.simulated.contains_any({Effect::kGlossyLobes, Effect::kMirrors})) return kOpaque;
+  if (transport.normals) return kMatte;
+  return s.max_depth > 0 ? kFlatMatte : kDirectFlatMatte;
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,47 @@
+// What light is carried through, with the effects that are left out taken out of it.
+#pragma once
+
+#include <span>
+
+#include "raykiln/integrator/path_tracer.hpp"
+
+namespace raykiln::render {
+
+/// Data of effects that are not simulated are not here: no point light, a black background,
+/// roulette off.
+struct Transport {
+  const Scene& scene;
+  const TriangleMesh& mesh;
+  const KdTree& tree;
+  const Emitters& emitters;
+  std::span<const PointLight> point_lights;
+  Rgb background{0.0F};
+  bool normals = true;    ///< shading normals are interpolated
+  bool has_light = true;  ///< any at all; without, nothing is lost where a path is cut off
+  PathSettings settings;
+};
+
+[[nodiscard]] Transport make_transport(const TransportScene& scene, const PathSettings& settings);
+
+/// Parts of the code that an instance of the shading loop has.
+struct Switches {
+  bool transmission = true;  ///< light may come from or go to the far side of a surface
+  bool specular = true;      ///< Phong lobes
+  bool normals = true;       ///< shading normals
+  bool bounces = true;       ///< paths go on after the first hit
+  bool reduced = false;      ///< something that is called for is left out: asked at every vertex
+};
+
+// One instance a switch, each with one switch less than the one before; not one a combination.
+inline constexpr Switches kGeneral{};
+inline constexpr Switches kReduced{.reduced = true};
+inline constexpr Switches kOpaque{.transmission = false};
+inline constexpr Switches kMatte{.transmission = false, .specular = false};
+inline constexpr Switches kFlatMatte{.transmission = false, .specular = false, .normals = false};
+inline constexpr Switches kDirectFlatMatte{
+    .transmission = false, .specular = false, .normals = false, .bounces = false};
+
+/// The switches of the leanest instance that can simulate what is to be simulated.
+[[nodiscard]] Switches switches_for(const Transport& transport);
+
+}  // namespace raykiln::render

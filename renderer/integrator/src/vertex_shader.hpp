@@ -1,0 +1,248 @@
+// The shading of one vertex, as a template over the parts of the code that are needed.
+// Included by the files that make an instance of it, and by no other.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "leave_out.hpp"
+#include "raykiln/shading/matte_bsdf.hpp"
+#include "raykiln/shading/surface_point.hpp"
+#include "vertex_shading.hpp"
+
+namespace raykiln::render {
+
+template <Switches kSwitches>
+using LobesOf = std::conditional_t<!kSwitches.specular, MatteBsdf<kSwitches.normals>,
+                                   std::conditional_t<kSwitches.transmission, Bsdf, OpaqueBsdf>>;
+
+template <class Lobes>
+struct Vertex {
+  std::uint32_t id;  ///< of the triangle
+  bool transmits;    ///< light from behind comes through
+  SurfacePoint point;
+  Lobes bsdf;
+  VertexKey key;
+};
+
+inline bool finite(const Rgbd& c) {
+  return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
+inline bool zero(const Rgb& c) { return c == Rgb(0.0F); }
+
+/// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is its throughput
+/// so far. The part of the throughput that is a change of medium is left out of p: inside glass of
+/// index n radiance is n^2 times larger, on the way from the camera throughput n^2 times smaller,
+/// and such a path is worth no less. What goes on has a throughput of `scale`, so weights stay
+/// bounded.
+inline bool survives_roulette(PathState& path, const VertexKey& key) {
+  if (path.bounce <= static_cast<std::uint32_t>(kBouncesBeforeRoulette)) return true;
+  const Rgbd& t = path.throughput;
+  const double p = std::max({t.x, t.y, t.z}) / path.scale;
+  if (!(p < 1.0)) return true;  // also what is not finite: it is counted further on
+  if (uniform(key, Dimension::kRoulette) >= p) return false;
+  path.throughput /= p;
+  return true;
+}
+
+/// Signed height of `light` over the plane of triangle `id`; 0 when it lies in it as far as doubles
+/// can tell, for then the sign is that of a rounding error. Differences of floats are exact in
+/// double or nearly so: a light one float step off an axis-parallel plane is never taken for one in
+/// it.
+inline double height_over(const TriangleMesh& mesh, std::uint32_t id, const Vec3d& ng,
+                          const Vec3d& light) {
+  const Vec3d way = light - Vec3d(mesh.positions[mesh.triangles[id][0]]);
+  const double height = dot(ng, way);
+  return std::abs(height) <= 0x1p-50 * dot(abs(ng), abs(way)) ? 0.0 : height;
+}
+
+/// Density over solid angle of a density over area, seen over `distance2` under `cosine`.
+inline double solid_angle_pdf(double pdf_area, double distance2, double cosine) {
+  return pdf_area * distance2 / cosine;
+}
+
+/// One vertex of a path, shaded with what `kSwitches` leaves in the code.
+template <Switches kSwitches>
+class VertexShader {
+ public:
+  using Lobes = LobesOf<kSwitches>;
+  using Vertex = render::Vertex<Lobes>;
+
+  VertexShader(const Transport& transport, const PathState& state, ShadingSinks& sinks)
+      : scene_(transport), settings_(transport.settings), state_(state), sinks_(sinks) {}
+
+  // L_o = L_e + sum over lights of f L cos + the scattered rays. A shadow ray to an emitter stands
+  // for one more reflection, so it is sent only where such a ray may be; point lights, which no ray
+  // can find, are added at every hit.
+  void shade(const Ray& ray, const Hit& hit) {
+    if (hit.id == kNoHit) {
+      sinks_.results[state_.slot].emitted += state_.throughput * Rgbd(scene_.background);
+      return;
+    }
+    const SurfacePoint point =
+        surface_point(scene_.mesh, hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v),
+                      kSwitches.normals && scene_.normals);
+    const Material& material = scene_.scene.materials[point.material];
+    add_emission(point, material.emission, ray, hit.t);
+    if (zero(material.diffuse) && zero(material.specular)) return;
+    if (kSwitches.reduced && state_.bounce > 0 && leaves_out(Effect::kIndirectLight)) return;
+    const bool last = !kSwitches.bounces || state_.bounce >= settings_.max_depth;
+    if (last) sinks_.results[state_.slot].truncated = scene_.has_light;
+    if (last && scene_.point_lights.empty()) return;
+
+    const Vertex vertex{hit.id, material.transparent > 0.0F, point, lobes(material, point, -ray.d),
+                        kSwitches.bounces && !last
+                            ? vertex_key(state_.key, state_.node, state_.bounce)
+                            : VertexKey{}};
+    light_from_points(vertex);
+    if (last) return;
+    if (settings_.emitter_sampling) light_from_emitters(vertex);
+    scatter(vertex);
+  }
+
+ private:
+  Lobes lobes(const Material& material, const SurfacePoint& point, const Vec3f& wo) const {
+    const Vec3f ng(point.ng);
+    if constexpr (!kSwitches.specular) {
+      return make_matte_bsdf<kSwitches.normals>(material, ng, point.ns, wo, settings_.bsdf);
+    } else if constexpr (!kSwitches.transmission) {
+      return make_opaque_bsdf(material, ng, point.ns, wo, settings_.bsdf);
+    } else {
+      Bsdf bsdf = make_bsdf(material, ng, point.ns, wo, settings_.bsdf);
+      if constexpr (kSwitches.reduced) {
+        const bool caustic = state_.met_diffuse && leaves_out(Effect::kCaustics);
+        leave_out(bsdf, material, settings_.left_out, caustic);
+      }
+      return bsdf;
+    }
+  }
+
+  /// Emission seen by the path itself, weighted against its being found by a shadow ray.
+  void add_emission(const SurfacePoint& point, const Rgb& radiance, const Ray& ray, float t) {
+    if (zero(radiance)) return;
+    if (kSwitches.reduced && leaves_out(Effect::kAreaEmitters)) return;
+    double weight = 1.0;
+    if (state_.bounce > 0 && settings_.emitter_sampling) {
+      const Vec3d d(ray.d);
+      const double distance2 = static_cast<double>(t) * static_cast<double>(t) * dot(d, d);
+      const double other = solid_angle_pdf(scene_.emitters.pdf_area(radiance), distance2,
+                                           std::abs(dot(point.ng, d)));
+      weight = power_heuristic(state_.pdf, other);
+    }
+    sinks_.results[state_.slot].emitted += state_.throughput * Rgbd(radiance) * weight;
+  }
+
+  /// Point lights: I cos / r^2 times f, all of them, as the seed goes through them.
+  void light_from_points(const Vertex& vertex) {
+    for (const PointLight& light : scene_.point_lights) {
+      if (sinks_.stopped) return;
+      const Vec3d way = Vec3d(light.position) - vertex.point.p;
+      const double distance2 = dot(way, way);
+      if (!(distance2 > 0.0)) {
+        ++sinks_.stats.lights_at_hits;
+        continue;
+      }
+      if (!faces(vertex, Vec3d(light.position))) continue;
+      const Vec3d wi = way / std::sqrt(distance2);
+      const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
+      const Rgbd arriving = Rgbd(light.intensity) / distance2;
+      const Rgbd found = state_.throughput * value.f_cos * arriving;
+      if (found == Rgbd(0.0)) continue;
+      if (kSwitches.reduced && leaves_out(Effect::kPointLightShadows)) {
+        sinks_.results[state_.slot].emitted += found;
+      } else {
+        queue({ray_origin(vertex.point, wi), light.position, ShadowEnd::kPointLight}, found);
+      }
+    }
+  }
+
+  /// One point on an emitting triangle, weighted against the path's own rays finding it.
+  void light_from_emitters(const Vertex& vertex) {
+    const EmitterSample sample = scene_.emitters.sample(scene_.scene, vertex.key);
+    const Vec3d way = sample.point.p - vertex.point.p;
+    const double distance2 = dot(way, way);
+    const Vec3d wi = way / std::sqrt(distance2);
+    const double cosine = std::abs(dot(sample.point.ng, wi));
+    if (!(distance2 > 0.0 && cosine > 0.0)) return;
+    const double pdf = solid_angle_pdf(sample.pdf_area, distance2, cosine);
+    const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
+    if (value.f_cos == Rgbd(0.0)) return;
+    const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
+    const Vec3f from = ray_origin(vertex.point, wi);
+    queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface},
+          state_.throughput * value.f_cos * sample.radiance * weight);
+  }
+
+  /// The rays that go on from here.
+  void scatter(const Vertex& vertex) {
+    const auto branches = static_cast<std::uint64_t>(settings_.branches);
+    for (std::uint64_t k = 0; k < branches; ++k) {
+      PathState child = state_;
+      child.node = state_.node * branches + k;
+      child.bounce = static_cast<std::uint16_t>(state_.bounce + 1);
+      const VertexKey key =
+          branches == 1 ? vertex.key : vertex_key(state_.key, child.node, state_.bounce);
+      const BsdfSample sample = sample_bsdf(vertex.bsdf, key);
+      if (sample.lobe == Lobe::kNone) continue;
+      if constexpr (kSwitches.reduced) child.met_diffuse |= sample.lobe == Lobe::kDiffuse;
+      child.throughput *= sample.weight / static_cast<double>(branches);
+      child.scale *= sample.radiance_scale / static_cast<double>(branches);
+      child.pdf = sample.pdf * static_cast<double>(branches);
+      if (settings_.bsdf.light.roulette && !survives_roulette(child, key)) {
+        ++sinks_.stats.roulette_ends;
+        continue;
+      }
+      if (!finite(child.throughput)) {
+        // Poisons the sample, which is then dropped, counted and located: never a silent black.
+        sinks_.results[state_.slot].emitted += child.throughput;
+        continue;
+      }
+      Ray ray;
+      ray.o = ray_origin(vertex.point, Vec3d(sample.wi));
+      ray.d = sample.wi;
+      sinks_.next.push(ray, child);
+    }
+  }
+
+  /// Can a light at this place light the surface? Decided in double: the floats in which values are
+  /// computed give a light within 1e-7 of the plane's direction the side of a rounding error.
+  bool faces(const Vertex& vertex, const Vec3d& light) const {
+    const double height = height_over(scene_.mesh, vertex.id, vertex.point.ng, light);
+    if (height == 0.0) return false;
+    const bool viewed_from_front = dot(Vec3d(vertex.bsdf.ng), vertex.point.ng) > 0.0;
+    return vertex.transmits || (height > 0.0) == viewed_from_front;
+  }
+
+  struct ShadowWay {
+    Vec3f from, to;
+    ShadowEnd end;
+  };
+  void queue(const ShadowWay& way, const Rgbd& light) {
+    if (light == Rgbd(0.0)) return;
+    sinks_.shadows.push(way.from, way.to, way.end, light, state_.slot);
+    if (sinks_.shadows.full()) {
+      sinks_.shadows.flush(scene_.tree, settings_.traversal, sinks_.results, sinks_.stats);
+      sinks_.stopped = sinks_.stop.stop_requested();
+    }
+  }
+
+  [[nodiscard]] bool leaves_out(Effect effect) const { return settings_.left_out.contains(effect); }
+
+  const Transport& scene_;
+  const PathSettings& settings_;
+  const PathState& state_;
+  ShadingSinks& sinks_;
+};
+
+template <Switches kSwitches>
+void shade_range(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks) {
+  const PathStream& front = range.front;
+  for (std::size_t i = range.begin; i < range.end && !sinks.stopped; ++i) {
+    (front.states[i].bounce == 0 ? sinks.stats.camera_rays : sinks.stats.bounce_rays) += 1;
+    VertexShader<kSwitches>(transport, front.states[i], sinks)
+        .shade(front.rays[i], range.hits[i - range.begin]);
+  }
+}
+
+}  // namespace raykiln::render
