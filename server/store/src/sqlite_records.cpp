@@ -121,7 +121,7 @@ std::optional<SceneRecord> find_scene(SQLite::Database& db, const std::string& i
 
 std::vector<SceneRecord> list_scenes(SQLite::Database& db, std::size_t offset, std::size_t limit) {
   SQLite::Statement query(db, std::string(kSceneColumns) +
-                                  "ORDER BY created DESC, id LIMIT ? OFFSET ?");
+                                  "ORDER BY created DESC, rowid DESC LIMIT ? OFFSET ?");
   query.bind(1, bounded(limit));
   query.bind(2, bounded(offset));
   std::vector<SceneRecord> scenes;
