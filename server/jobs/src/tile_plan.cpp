@@ -6,9 +6,6 @@
 namespace raykiln::server {
 namespace {
 
-/// Pixels of a band while nothing is known about the cost of a sample.
-constexpr std::uint64_t kFirstBandPixels = 16 * 1024;
-
 /// Tiles that one item holds at most: bounds the memory of an item with tiles of few pixels.
 constexpr std::size_t kMaxParts = 4096;
 
@@ -143,7 +140,9 @@ int TilePlan::pick_rows(const Tile& tile) const {
   const double cost = cost_of_sample(tile);
   std::uint64_t most = length_.max_pixel_blocks / (tile.pass_end - tile.next_block);
   if (cost <= 0.0) {
-    most = std::min(most, kFirstBandPixels);
+    // Nothing is known about the cost of a sample: as little as keeps streams long. The first
+    // results set the pace, so that even costly scenes have few tasks that are too long.
+    most = std::min(most, length_.least_stream);
   } else {
     const double one = cost * static_cast<double>(samples_in(tile.next_block, tile.pass_end));
     if (static_cast<double>(pixels) * one > length_.high_seconds) {

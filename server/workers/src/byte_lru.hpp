@@ -9,17 +9,21 @@
 
 namespace raykiln::server {
 
-/// Not safe for several threads. What is inserted last stays even if it alone is over the bound.
+/// Not safe for several threads. What is inserted last stays, with what it was inserted beside, even if
+/// they alone are over the bound.
 template <class Value>
 class ByteLru {
  public:
   explicit ByteLru(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
 
-  void insert(const std::string& key, Value value, std::uint64_t bytes) {
+  /// `beside`: an entry that this one refers to and that is not to go before it; "" for none.
+  void insert(const std::string& key, Value value, std::uint64_t bytes, const std::string& beside = "") {
     erase(key);
     entries_.insert_or_assign(key, Entry{std::move(value), bytes, ++clock_});
     bytes_ += bytes;
-    while (bytes_ > max_bytes_ && entries_.size() > 1) erase(oldest());
+    (void)use(beside);
+    const std::size_t stay = entries_.contains(beside) ? 2 : 1;
+    while (bytes_ > max_bytes_ && entries_.size() > stay) erase(oldest());
   }
 
   /// The value, now the most recently used.

@@ -164,14 +164,16 @@ Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight)
   ReadyScene scene{loaded->scene, render::prepare(loaded->scene, tree->tree.tree),
                    tree->tree.report, tree->built_now, key};
   const std::scoped_lock lock(mutex);
-  keep(scene_key(flight->scene_id), scene, bytes_of(*scene.scene));
-  (void)kept.use(key);
+  // Another scene may have driven the tree out meanwhile: what is kept is counted with all it holds.
+  if (!kept.contains(key)) keep(key, tree->tree, tree->tree.report.stats.bytes);
+  keep(scene_key(flight->scene_id), scene, bytes_of(*scene.scene), key);
   reports[flight->scene_id] = scene.tree;
   return scene;
 }
 
-void SceneCache::State::keep(const std::string& key, Kept value, std::uint64_t bytes) {
-  kept.insert(key, std::move(value), bytes);
+void SceneCache::State::keep(const std::string& key, Kept value, std::uint64_t bytes,
+                             const std::string& beside) {
+  kept.insert(key, std::move(value), bytes, beside);
   bytes_.set(static_cast<double>(kept.bytes()));
 }
 

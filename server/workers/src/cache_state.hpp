@@ -59,7 +59,7 @@ struct SceneCache::State {
   [[nodiscard]] std::optional<BuiltTree> build(TreeFlight& tree_flight, const render::Scene& scene);
   [[nodiscard]] bool is_wanted(const TreeFlight& tree_flight) const;
   void report(const TreeFlight& tree_flight, double fraction) const;
-  void keep(const std::string& key, Kept value, std::uint64_t bytes);
+  void keep(const std::string& key, Kept value, std::uint64_t bytes, const std::string& beside = "");
 
   Parts parts_;
   Counter& builds_;

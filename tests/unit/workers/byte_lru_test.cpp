@@ -19,7 +19,13 @@ TEST(ByteLru, DropsTheLeastRecentlyUsedBeyondItsBytes) {
   lru.insert("huge", 5, 1000);
   EXPECT_EQ(lru.use("huge"), 5) << "what is being used now stays";
   EXPECT_EQ(lru.bytes(), 1000U);
-  lru.erase("huge");
+  lru.insert("beside", 6, 20, "huge");
+  EXPECT_TRUE(lru.contains("huge")) << "what the last one refers to stays with it";
+  EXPECT_EQ(lru.bytes(), 1020U);
+  lru.insert("next", 7, 30);
+  EXPECT_FALSE(lru.contains("beside") || lru.contains("huge")) << "who refers goes first";
+  EXPECT_EQ(lru.bytes(), 30U);
+  lru.erase("next");
   EXPECT_EQ(lru.bytes(), 0U);
 }
 
