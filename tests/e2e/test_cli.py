@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import zipfile
 
@@ -242,6 +243,26 @@ def test_lint_of_a_refused_scene_names_the_place(tmp_path):
     (tmp_path / "bad.obj").write_text("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n")
     done = raykiln("lint", tmp_path / "bad.obj")
     assert done.returncode == 10 and "line 2" in done.stdout and "error" in done.stdout
+
+
+def test_half_floats_take_half_the_bytes_and_say_what_they_clamp(folder, tmp_path):
+    sidecar = json.loads((folder / "raykiln.json").read_text())
+    sidecar["background"] = [1e6, 1e6, 1e6]
+    bright = tmp_path / "bright"
+    shutil.copytree(folder, bright)
+    (bright / "raykiln.json").write_text(json.dumps(sidecar))
+    whole, half = tmp_path / "whole.exr", tmp_path / "half.exr"
+    words = ("render", bright / "box.obj", "--samples", 1, "--size", "32x24")
+    assert raykiln(*words, "-o", whole).returncode == 0
+    done = raykiln(*words, "-o", half, "--half")
+    assert done.returncode == 0
+    full, cut = read_exr(whole.read_bytes()), read_exr(half.read_bytes())
+    beyond = int((full.pixels > 65504).sum())
+    assert f"{beyond} values are beyond 65504" in done.stderr
+    assert cut.metadata["raykiln:clamped_values"] == str(beyond)
+    assert np.isfinite(cut.pixels).all() and cut.pixels.max() == 65504
+    inside = (full.pixels < 65504) & (full.pixels > 1e-3)
+    assert np.allclose(cut.pixels[inside], full.pixels[inside], rtol=2**-11)
 
 
 def test_replay_gives_the_same_sample_again(folder, tmp_path):

@@ -171,6 +171,14 @@ def replay_pictures(replay, job):
     replay(*image, 304, {"job": job}, headers={"If-None-Match": tag})
     replay(*image, 400, {"job": job}, params={"format": "gif"})
     replay(*image, 404, {"job": "j_none"})
+    half = replay(*image, 200, {"job": job}, params={"format": "exr", "type": "half"})
+    assert half.headers["Raykiln-Clamped-Values"] == "0"
+    replay(*image, 400, {"job": job}, params={"type": "half"})
+    sample, first = ("get", "/v1/jobs/{job}/samples"), {"x": 0, "y": 0, "sample": 0}
+    replay(*sample, 200, {"job": job}, params=first)
+    replay(*sample, 400, {"job": job}, params={"x": 0, "y": 0})
+    replay(*sample, 400, {"job": job}, params={**first, "x": 64})
+    replay(*sample, 404, {"job": "j_none"}, params=first)
 
 
 def replay_server(replay, job):

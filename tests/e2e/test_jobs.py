@@ -225,7 +225,8 @@ def test_bodies_that_are_no_request(api, body):
     answer = api.request("POST", "/v1/jobs", data=body,
                          headers={"Content-Type": "application/json"})
     assert answer.status_code in (400, 422), answer.text
-    problem(answer, answer.status_code, answer.json()["code"])
+    detail = problem(answer, answer.status_code, answer.json()["code"])["detail"]
+    assert detail == detail.strip()
 
 
 def test_a_json_body_beyond_its_limit(api):

@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -18,6 +19,45 @@ constexpr float kHalfVanishes = 0x1p-25F;  ///< half of the smallest denormal, a
 std::uint8_t display_byte(double linear) {
   return static_cast<std::uint8_t>(std::lround(255.0 * display_value(linear)));
 }
+
+/// display_byte() without a power for each value: where the byte steps up, found once a picture, and
+/// the byte at the start of each of kCells equal parts of [0, 1]. A part holds about one step at
+/// most, so that what is left is a comparison or two.
+class DisplayBytes {
+ public:
+  DisplayBytes() {
+    for (std::size_t byte = 1; byte < steps_.size(); ++byte) {
+      steps_[byte] = first_value_of(static_cast<int>(byte));
+    }
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      cells_[cell] = display_byte(static_cast<double>(cell) / kCells);
+    }
+  }
+
+  [[nodiscard]] std::uint8_t operator()(double linear) const {
+    if (!(linear > 0.0)) return 0;  // NaN too
+    if (linear >= 1.0) return 255;
+    std::size_t byte = cells_[static_cast<std::size_t>(linear * kCells)];
+    while (byte < 255 && linear >= steps_[byte + 1]) ++byte;
+    return static_cast<std::uint8_t>(byte);
+  }
+
+ private:
+  static constexpr int kCells = 4096;
+
+  /// The smallest double that shows as `byte` or more.
+  static double first_value_of(int byte) {
+    double below = 0.0, enough = 1.0;
+    while (true) {
+      const double middle = below + 0.5 * (enough - below);
+      if (!(below < middle && middle < enough)) return enough;
+      (display_byte(middle) >= byte ? enough : below) = middle;
+    }
+  }
+
+  std::array<double, 256> steps_{};
+  std::array<std::uint8_t, kCells> cells_{};
+};
 
 OIIO::ImageSpec rgb_spec(const Image& image, OIIO::TypeDesc type) {
   OIIO::ImageSpec spec(image.width, image.height, 3, type);
@@ -70,7 +110,7 @@ std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_
   const double gain = std::exp2(exposure_stops);
   std::vector<std::uint8_t> display(image.rgb.size());
   std::transform(image.rgb.begin(), image.rgb.end(), display.begin(),
-                 [gain](float x) { return display_byte(gain * static_cast<double>(x)); });
+                 [gain, bytes = DisplayBytes()](float x) { return bytes(gain * static_cast<double>(x)); });
   OIIO::ImageSpec spec = rgb_spec(image, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   if (!note.empty()) spec.attribute("ImageDescription", note);
@@ -82,15 +122,23 @@ std::variant<Bytes, EncodeError> encode_exr(const Image& image,
   return encode_linear(image, OIIO::TypeDesc::FLOAT, attributes);
 }
 
+HalfRange half_range(const Image& image) {
+  HalfRange range;
+  for (const float value : image.rgb) {
+    range.vanished += value != 0.0F && std::abs(value) <= kHalfVanishes ? 1U : 0U;
+    range.clamped += std::abs(value) > kLargestHalf ? 1U : 0U;
+  }
+  return range;
+}
+
 std::variant<HalfExr, EncodeError> encode_half_exr(
     const Image& image, const std::map<std::string, std::string>& attributes) {
-  HalfExr result;
+  const HalfRange range = half_range(image);
+  HalfExr result{.bytes = {}, .clamped = range.clamped, .vanished = range.vanished};
   Image fitting = image;
   for (float& value : fitting.rgb) {
-    result.vanished += value != 0.0F && std::abs(value) <= kHalfVanishes ? 1U : 0U;
-    if (!(std::abs(value) > kLargestHalf)) continue;  // NaN stays what it is
-    value = std::copysign(kLargestHalf, value);
-    ++result.clamped;
+    // NaN stays what it is
+    if (std::abs(value) > kLargestHalf) value = std::copysign(kLargestHalf, value);
   }
   auto encoded = encode_linear(fitting, OIIO::TypeDesc::HALF, attributes);
   if (const auto* error = std::get_if<EncodeError>(&encoded)) return *error;

@@ -104,15 +104,23 @@ PixelSums Film::pixel(std::size_t index) const {
 
 Image Film::resolve() const {
   Image image{.width = width_, .height = height_, .rgb = std::vector<float>(3 * pixels_.size())};
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const PixelSums sums = pixel(i);
-    const std::uint64_t n = sums.samples();
-    if (n == 0) continue;
-    for (std::size_t c = 0; c < 3; ++c) {
-      image.rgb[3 * i + c] = static_cast<float>(sums.beauty[c] / static_cast<double>(n));
+  resolve({0, 0, width_, height_}, image);
+  return image;
+}
+
+void Film::resolve(const PixelRect& part, Image& into) const {
+  for (int y = part.y0; y < part.y1; ++y) {
+    const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    for (int x = part.x0; x < part.x1; ++x) {
+      const auto i = row + static_cast<std::size_t>(x);
+      const PixelSums sums = pixel(i);
+      const std::uint64_t n = sums.samples();
+      if (n == 0) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        into.rgb[3 * i + c] = static_cast<float>(sums.beauty[c] / static_cast<double>(n));
+      }
     }
   }
-  return image;
 }
 
 std::vector<double> Film::plane(std::string_view name) const {

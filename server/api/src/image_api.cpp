@@ -15,16 +15,22 @@ constexpr double kMaxStops = 32.0;
 /// What a client may ask of a picture.
 struct ImageQuery {
   bool exr = false;
+  bool half = false;  ///< values of the exr
   double exposure_stops = 0.0;
   std::string layer = "beauty";
 };
 
 std::variant<ImageQuery, Problem> parse_image_query(const Request& request) {
-  if (auto problem = check_query(request, {"format", "exposure", "rev", "layer"})) return *problem;
+  if (auto problem = check_query(request, {"format", "type", "exposure", "rev", "layer"})) return *problem;
   ImageQuery query;
   if (const auto* format = find_value(request.query, "format")) {
     if (*format != "png" && *format != "exr") return invalid_parameter("format", "must be png or exr");
     query.exr = *format == "exr";
+  }
+  if (const auto* type = find_value(request.query, "type")) {
+    if (*type != "float" && *type != "half") return invalid_parameter("type", "must be float or half");
+    query.half = *type == "half";
+    if (query.half && !query.exr) return invalid_parameter("type", "half is for format=exr");
   }
   const auto stops = query_number(request, "exposure", -kMaxStops, kMaxStops, 0.0);
   if (!stops) return invalid_parameter("exposure", "must be a number of stops from -32 to 32");
@@ -45,7 +51,7 @@ std::string shortest(double value) {
 }
 
 std::string image_key(const JobImage& image, const ImageQuery& query) {
-  return image.job + '-' + std::to_string(image.revision) + '-' + (query.exr ? "exr" : "png") + '-' +
+  return image.job + '-' + std::to_string(image.revision) + '-' + (query.half ? "half" : query.exr ? "exr" : "png") + '-' +
          shortest(query.exposure_stops) + '-' + query.layer;
 }
 
@@ -61,10 +67,21 @@ std::map<std::string, std::string> exr_attributes(const JobImage& image, const s
           {"raykiln:version", version}};
 }
 
+std::variant<render::Bytes, render::EncodeError> encode_half(const JobImage& image, const std::string& version) {
+  const auto range = render::half_range(image.image);
+  auto attributes = exr_attributes(image, version);
+  attributes["raykiln:clamped_values"] = std::to_string(range.clamped);
+  attributes["raykiln:vanished_values"] = std::to_string(range.vanished);
+  auto encoded = render::encode_half_exr(image.image, attributes);
+  if (const auto* error = std::get_if<render::EncodeError>(&encoded)) return *error;
+  return std::move(std::get<render::HalfExr>(encoded).bytes);
+}
+
 Result<std::string> encode(const JobImage& image, const ImageQuery& query,
                            const std::string& version) {
-  auto encoded = query.exr ? render::encode_exr(image.image, exr_attributes(image, version))
-                           : render::encode_png(image.image, query.exposure_stops);
+  auto encoded = query.half  ? encode_half(image, version)
+                 : query.exr ? render::encode_exr(image.image, exr_attributes(image, version))
+                             : render::encode_png(image.image, query.exposure_stops);
   if (const auto* error = std::get_if<render::EncodeError>(&encoded)) {
     return Error{ErrorKind::kInternal, "internal", error->message, {}};
   }
@@ -109,6 +126,10 @@ Answer Api::get_image(const Request& request) {
   response.content_type = query.exr ? "image/x-exr" : "image/png";
   response.headers.emplace_back("Content-Disposition", "inline; filename=\"" + image.job +
                                                            (query.exr ? ".exr\"" : ".png\""));
+  if (query.half) {
+    response.headers.emplace_back("Raykiln-Clamped-Values",
+                                  std::to_string(render::half_range(image.image).clamped));
+  }
   response.body = *bytes;
   return response;
 }

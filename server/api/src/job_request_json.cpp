@@ -189,7 +189,8 @@ std::variant<JobRequest, Problem> parse_job_request(std::string_view body, const
   else errors.push_back({"", "wrong_type", "must be an object"});
   if (errors.empty()) return request;
   Problem problem{422, "invalid_request",
-                  errors.size() == 1 ? errors[0].pointer + ' ' + errors[0].detail
+                  errors.size() == 1 ? (errors[0].pointer.empty() ? "the body" : errors[0].pointer) + ' ' +
+                                           errors[0].detail
                                      : std::to_string(errors.size()) + " fields are wrong"};
   problem.errors = std::move(errors);
   return problem;

@@ -82,10 +82,12 @@ void complete_stops(const CLI::App& command, JobRequest& request) {
   if (stop.error && !stop.seconds) stop.seconds = kDefaultErrorSeconds;
 }
 
-void add_picture_options(CLI::App& command, CliOptions& options) {
+constexpr const char* kSceneFiles = ".obj, .gltf, .glb, .zip or a folder";
+
+void add_picture_options(CLI::App& command, CliOptions& options, const char* what = kSceneFiles) {
   const JobLimits limits;
   JobRequest& request = options.picture.request;
-  command.add_option("SCENE", options.scene, ".obj, .gltf, .glb, .zip or a folder")->required();
+  command.add_option("SCENE", options.scene, what)->required();
   command.add_option("--samples", request.stop.samples, "samples per pixel")
       ->check(CLI::Range(std::uint64_t{1}, limits.max_samples))
       ->capture_default_str();
@@ -116,6 +118,8 @@ void add_output(CLI::App& command, CliOptions& options, bool required) {
   auto* option = command.add_option("-o,--output", options.outputs,
                                     "picture file, .exr or .png; may be given twice");
   if (required) option->required();
+  command.add_flag("--half", options.picture.half,
+                   "EXR in half floats: half the bytes, values beyond 65504 are clamped and counted");
 }
 
 void add_job(CLI::App& command, CliOptions& options) {
@@ -159,11 +163,12 @@ void add_commands(CLI::App& app, CliOptions& options) {
   render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
 
   auto* lint = app.add_subcommand("lint", "report what is questionable about a scene");
-  lint->add_option("SCENE", options.scene, ".obj, .gltf, .glb, .zip or a folder")->required();
+  lint->add_option("SCENE", options.scene, kSceneFiles)->required();
   app.add_subcommand("selftest", "check this program against scenes with a known answer (under a minute)");
 
-  auto* replay = app.add_subcommand("replay", "render one sample of a picture again and print it");
-  add_picture_options(*replay, options);
+  auto* replay = app.add_subcommand("replay", "render one sample of a job of the server, or of a scene, again and print it");
+  add_picture_options(*replay, options,
+                      "job id (the options of the picture are the job's then), or a scene");
   replay->add_option("X", options.replay.x, "pixel column, from the left")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("Y", options.replay.y, "pixel row, from the top")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("SAMPLE", options.replay.sample, "index of the sample, from 0")->required();

@@ -137,6 +137,13 @@ Result<ServerAddress> parse_server_url(std::string_view url) {
   return server;
 }
 
+const std::string* ClientResponse::header(std::string_view name) const {
+  for (const auto& [known, value] : headers) {
+    if (beast::iequals(known, name)) return &value;
+  }
+  return nullptr;
+}
+
 HttpClient::HttpClient(ServerAddress server, std::chrono::seconds silence)
     : server_(std::move(server)), silence_(silence) {}
 

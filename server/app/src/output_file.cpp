@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 
 namespace raykiln::server {
 
@@ -24,6 +25,11 @@ std::optional<std::string> write_whole_file(const std::filesystem::path& path,
   std::filesystem::rename(part, path, error);
   if (error) return fail(error.message());
   return std::nullopt;
+}
+
+void say_clamped(const std::filesystem::path& path, const std::string& values) {
+  std::cerr << "warning: " << path.string() << ": " << values
+            << " values are beyond 65504 and were clamped to it\n";
 }
 
 }  // namespace raykiln::server

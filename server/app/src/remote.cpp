@@ -122,11 +122,14 @@ ExitCode fetch_pictures(Remote& remote, const CliOptions& options, const std::st
   for (const auto& output : options.outputs) {
     std::string target = "/v1/jobs/" + job + "/image?format=";
     target += output.extension() == ".exr" ? "exr" : "png";
+    if (output.extension() == ".exr" && options.picture.half) target += "&type=half";
     if (output.extension() == ".png" && options.picture.exposure_stops != 0.0) {
       target += "&exposure=" + std::to_string(options.picture.exposure_stops);
     }
     const auto response = remote.ask("GET", target);
     if (!response) return remote.failure();
+    const auto* clamped = response->header("raykiln-clamped-values");
+    if (clamped != nullptr && *clamped != "0") say_clamped(output, *clamped);
     if (const auto error = write_whole_file(output, response->body)) {
       return remote.fail(ExitCode::kFailure, *error);
     }

@@ -33,12 +33,38 @@ std::map<std::string, std::string> attributes(const LocalPicture& picture, const
           {"raykiln:version", RAYKILN_VERSION}};
 }
 
+std::variant<render::Bytes, render::EncodeError> exr(const CliOptions& options,
+                                                     const LocalPicture& picture,
+                                                     const std::string& scene,
+                                                     const std::filesystem::path& output) {
+  auto written = attributes(picture, scene);
+  if (!options.picture.half) return render::encode_exr(picture.image, written);
+  const auto range = render::half_range(picture.image);
+  written["raykiln:clamped_values"] = std::to_string(range.clamped);
+  written["raykiln:vanished_values"] = std::to_string(range.vanished);
+  if (range.clamped > 0) say_clamped(output, std::to_string(range.clamped));
+  auto encoded = render::encode_half_exr(picture.image, written);
+  if (const auto* error = std::get_if<render::EncodeError>(&encoded)) return *error;
+  return std::move(std::get<render::HalfExr>(encoded).bytes);
+}
+
+/// Samples that are not in the picture, and how to look at one of them.
+void say_bad_samples(const CliOptions& options, const JobStatistics& statistics) {
+  if (statistics.non_finite == 0) return;
+  std::cerr << "warning: " << statistics.non_finite
+            << " samples were not finite and are not in the picture\n";
+  for (const auto& bad : statistics.bad_samples) {
+    std::cerr << "  raykiln replay " << options.scene.string() << ' ' << bad.x << ' ' << bad.y << ' '
+              << bad.sample << " (with the options of this picture)\n";
+  }
+}
+
 ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
                         const std::string& scene) {
   for (const auto& output : options.outputs) {
-    auto encoded = output.extension() == ".exr"
-                       ? render::encode_exr(picture.image, attributes(picture, scene))
-                       : render::encode_png(picture.image, options.picture.exposure_stops);
+    const auto encoded = output.extension() == ".png"
+                             ? render::encode_png(picture.image, options.picture.exposure_stops)
+                             : exr(options, picture, scene, output);
     std::optional<std::string> error;
     if (const auto* failure = std::get_if<render::EncodeError>(&encoded)) {
       error = failure->message;
@@ -106,6 +132,7 @@ ExitCode render_command(const CliOptions& options) {
     }
   }
   if (!options.quiet) std::cerr << accuracy_line(picture->job) << '\n';
+  if (!options.quiet) say_bad_samples(options, picture->job.statistics);
   const auto code = write_pictures(options, *picture, *scene);
   if (options.json && code == ExitCode::kOk) std::cout << job_json(picture->job) << '\n';
   return code;

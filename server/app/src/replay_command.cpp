@@ -1,17 +1,21 @@
-#include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <thread>
 
-#include "json_text.hpp"
+#include "raykiln/api/replay_json.hpp"
 #include "raykiln/app/cli.hpp"
 #include "raykiln/app/scene_package.hpp"
+#include "raykiln/base/ids.hpp"
 #include "raykiln/render/replay.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/scene_intake.hpp"
+#include "remote.hpp"
 #include "scratch.hpp"
 
 namespace raykiln::server {
 namespace {
+
+constexpr int kMostWaits = 600;  ///< a second each, for a scene that is being made ready
 
 std::string number(double value) {
   char text[40];
@@ -19,28 +23,17 @@ std::string number(double value) {
   return text;
 }
 
-/// JSON has no word for what is not finite: such a channel is a string.
-std::string json_number(double value) {
-  return std::isfinite(value) ? number(value) : json_string(number(value));
-}
-
-void print(const ReplayPlace& at, const render::ReplayedSample& sample, bool as_json) {
-  const auto& c = sample.radiance;
+void print(const ReplayView& sample, bool as_json) {
   if (as_json) {
-    std::cout << "{\"x\":" << at.x << ",\"y\":" << at.y << ",\"sample\":" << at.sample
-              << ",\"radiance\":[" << json_number(c.x) << ',' << json_number(c.y) << ','
-              << json_number(c.z) << "],\"dropped\":" << (sample.dropped ? "true" : "false")
-              << ",\"truncated\":" << (sample.truncated ? "true" : "false")
-              << ",\"bounce_rays\":" << sample.stats.bounce_rays
-              << ",\"shadow_rays\":" << sample.stats.shadow_rays << "}\n";
+    std::cout << replay_json(sample) << '\n';
     return;
   }
-  std::cout << "pixel (" << at.x << ", " << at.y << "), sample " << at.sample << ": radiance "
-            << number(c.x) << ' ' << number(c.y) << ' ' << number(c.z)
+  const auto& [r, g, b] = sample.radiance;
+  std::cout << "pixel (" << sample.x << ", " << sample.y << "), sample " << sample.sample
+            << ": radiance " << number(r) << ' ' << number(g) << ' ' << number(b)
             << (sample.dropped ? ", dropped: not finite" : "")
-            << (sample.truncated ? ", cut at the path limit" : "") << "; "
-            << sample.stats.bounce_rays << " rays after the first, " << sample.stats.shadow_rays
-            << " shadow rays\n";
+            << (sample.truncated ? ", cut at the path limit" : "") << "; " << sample.bounce_rays
+            << " rays after the first, " << sample.shadow_rays << " shadow rays\n";
 }
 
 ExitCode complain(const Error& error) {
@@ -48,9 +41,39 @@ ExitCode complain(const Error& error) {
   return error.code == "invalid_request" ? ExitCode::kUsage : ExitCode::kScene;
 }
 
-}  // namespace
+/// A job's id, unless a file of this name says otherwise.
+bool names_a_job(const CliOptions& options) {
+  const std::string text = options.scene.string();
+  std::error_code ignored;  // what cannot be looked at is no scene
+  return text.starts_with("j_") && is_plain_id(text, 64) && !std::filesystem::exists(text, ignored);
+}
 
-ExitCode replay_command(const CliOptions& options) {
+/// The sample as the job's server renders it.
+ExitCode replay_of_job(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  const ReplayPlace& at = options.replay;
+  const std::string target = "/v1/jobs/" + options.scene.string() + "/samples?x=" +
+                             std::to_string(at.x) + "&y=" + std::to_string(at.y) +
+                             "&sample=" + std::to_string(at.sample);
+  for (int attempt = 0;; ++attempt) {
+    auto answer = HttpClient(remote->address()).request("GET", target);
+    if (answer && answer->status == 503 && attempt < kMostWaits &&
+        answer->body.find("\"scene_not_ready\"") != std::string::npos) {
+      std::this_thread::sleep_for(std::chrono::seconds(1));  // it reads the scene, builds its tree
+      continue;
+    }
+    const auto response = remote->check(std::move(answer));
+    if (!response) return remote->failure();
+    const auto sample = parse_replay(response->body);
+    if (!sample) return remote->fail(ExitCode::kFailure, "the server's answer is no sample");
+    print(*sample, options.json);
+    return ExitCode::kOk;
+  }
+}
+
+/// The sample as this program renders it.
+ExitCode replay_of_scene(const CliOptions& options) {
   const auto package = find_scene_files(options.scene);
   if (!package) return complain(package.error());
   const Scratch scratch;
@@ -60,7 +83,8 @@ ExitCode replay_command(const CliOptions& options) {
       limits, [&scratch] { return Result<std::filesystem::path>(scratch.path()); });
   const auto loaded = intake->load(package->kind, package->files, {});
   if (!loaded) return complain(loaded.error());
-  const auto settings = render_settings(options.picture.request, *loaded->scene);
+  const JobRequest& request = options.picture.request;
+  const auto settings = render_settings(request, *loaded->scene);
   if (!settings) return complain(settings.error());
   const ReplayPlace& at = options.replay;
   if (at.x >= settings->width || at.y >= settings->height) {
@@ -68,8 +92,19 @@ ExitCode replay_command(const CliOptions& options) {
   }
   render::SerialTaskRunner runner;
   const auto scene = render::prepare(loaded->scene, render::build_scene_tree(*loaded->scene, {}, runner));
-  print(at, render::replay_sample(*scene, *settings, at.x, at.y, at.sample), options.json);
+  const auto replayed = render::replay_sample(*scene, *settings, at.x, at.y, at.sample);
+  ReplayView view{at.x, at.y, at.sample, {replayed.radiance.x, replayed.radiance.y, replayed.radiance.z},
+                  replayed.dropped, replayed.truncated, replayed.stats.bounce_rays,
+                  replayed.stats.shadow_rays,
+                  light_model_label(request.light_model, request.light_model_overrides), request.seed};
+  print(view, options.json);
   return ExitCode::kOk;
+}
+
+}  // namespace
+
+ExitCode replay_command(const CliOptions& options) {
+  return names_a_job(options) ? replay_of_job(options) : replay_of_scene(options);
 }
 
 }  // namespace raykiln::server

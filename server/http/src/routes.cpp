@@ -42,6 +42,7 @@ Router make_routes(Api& api, const StaticFiles& files, std::size_t max_json_byte
   table.route("POST", "/v1/jobs/<job>/cancel", to(&Api::cancel_job));
   table.route("GET", "/v1/jobs/<job>/events", to(&Api::watch_job));
   table.route("GET", "/v1/jobs/<job>/image", to(&Api::get_image));
+  table.route("GET", "/v1/jobs/<job>/samples", to(&Api::replay_sample));
 
   table.route("GET", "/livez", to(&Api::livez));
   table.route("GET", "/readyz", to(&Api::readyz));

@@ -31,6 +31,7 @@ struct LiveJob {
   render::RenderSettings settings;
   std::vector<render::SampleBlock> blocks;
   std::shared_ptr<render::Film> film;  ///< shared with what stores it, once nothing is merged any more
+  render::Image picture;  ///< of the film as it is: kept up to date tile by tile
   std::optional<TilePlan> plan;
   std::stop_source stop;
   int in_flight = 0;
@@ -74,6 +75,7 @@ class Scheduler::Core {
   void image(const JobId& id, const std::string& layer, const Reply<JobImagePtr>& reply);
 
   // core_scenes.cpp
+  void replay_inputs(const JobId& id, const Reply<ReplayInputs>& reply);
   void add_scene(std::shared_ptr<std::unique_ptr<SceneUpload>> upload,
                  const AddSceneOptions& options, const Reply<AddedScene>& reply);
   void scene(const std::string& id, const Reply<SceneView>& reply);
@@ -136,6 +138,8 @@ class Scheduler::Core {
 
   // core_scenes.cpp
   [[nodiscard]] SceneView view(SceneRecord record) const;
+  [[nodiscard]] Status begin_preparing(const std::string& id);
+  [[nodiscard]] std::optional<ReadyScene> scene_in_memory(const std::string& id);
   void import_scene(std::shared_ptr<std::unique_ptr<SceneUpload>> upload,
                     const AddSceneOptions& options, const Reply<AddedScene>& reply);
 
@@ -152,7 +156,8 @@ class Scheduler::Core {
   std::map<int, SteadyTime> worker_free_since_;
   std::size_t active_ = 0;
   std::uint64_t active_film_bytes_ = 0;
-  int tasks_in_flight_ = 0;
+  /// Tasks that an executor has: job and item. An answer for any other is late, or comes twice.
+  std::set<std::pair<JobId, std::uint64_t>> in_flight_;
   std::size_t pending_imports_ = 0;
   std::uint64_t next_order_ = 1;
   double mean_job_seconds_ = 0.0;

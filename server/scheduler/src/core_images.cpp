@@ -27,7 +27,7 @@ Error image_not_ready() {
 JobImagePtr Scheduler::Core::resolve(LiveJob& job) {
   const SteadyTime begin = parts_.clock.steady();
   auto image = framed(job.snapshot);
-  image->image = job.film->resolve();
+  image->image = job.picture;
   job.snapshot.statistics.publish_seconds += seconds_between(begin, parts_.clock.steady());
   return image;
 }

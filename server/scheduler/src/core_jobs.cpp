@@ -66,7 +66,7 @@ Result<std::optional<SubmittedJob>> Scheduler::Core::earlier_submission(const Su
 }
 
 Status Scheduler::Core::check_resources(const JobRequest& request) {
-  const std::uint64_t bytes = render::film_bytes(request.width, request.height);
+  const std::uint64_t bytes = film_memory(request);
   if (bytes > config_.scheduler.max_film_bytes) {
     return Error{ErrorKind::kTooLarge, "film_too_large",
                  "the picture needs " + std::to_string(bytes) + " bytes, " +

@@ -87,7 +87,7 @@ void Scheduler::Core::restore() {
 /// Lets shutdown() see whether something is under way.
 void Scheduler::Core::note_busy() {
   const std::scoped_lock lock(idle_mutex_);
-  busy_ = (halted_ ? 0 : active_) + static_cast<std::size_t>(tasks_in_flight_);
+  busy_ = (halted_ ? 0 : active_) + in_flight_.size();
   if (busy_ == 0) idle_.notify_all();
 }
 

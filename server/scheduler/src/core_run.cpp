@@ -53,8 +53,7 @@ void Scheduler::Core::start_jobs() {
 bool Scheduler::Core::start_next_job() {
   if (queue_.empty()) return false;
   LiveJob& job = *find(queue_.front());
-  const std::uint64_t bytes =
-      render::film_bytes(job.snapshot.request.width, job.snapshot.request.height);
+  const std::uint64_t bytes = film_memory(job.snapshot.request);
   if (active_ > 0 && active_film_bytes_ + bytes > config_.scheduler.max_film_bytes) return false;
   ++active_;
   active_film_bytes_ += bytes;
@@ -97,6 +96,7 @@ void Scheduler::Core::prepared(const JobId& id, Result<ReadyScene> scene) {
     start_rendering(*job, std::move(*scene));
   } catch (const std::bad_alloc&) {
     job->film.reset();
+    job->picture = {};
     job->plan.reset();
     transition(*job, JobEvent::kFail,
                Error{ErrorKind::kInternal, "render_failed", "no memory for the film", ""});
@@ -114,6 +114,9 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   job.scene = std::move(scene);
   job.blocks = render::blocks_for(s.request.stop.samples);
   job.film = std::make_shared<render::Film>(s.request.width, s.request.height);
+  job.picture = {s.request.width, s.request.height,
+                 std::vector<float>(3 * static_cast<std::size_t>(s.request.width) *
+                                    static_cast<std::size_t>(s.request.height))};
   job.plan.emplace(s.request.width, s.request.height, s.request.tile, samples_of(job.blocks),
                    task_length(config_.scheduler));
   job.render_since = parts_.clock.steady();
@@ -126,8 +129,8 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
 
 /// Keeps as many tasks waiting as run, so that no worker waits for this strand.
 void Scheduler::Core::dispatch() {
-  const int most = 2 * parts_.executor.concurrency() + 1;
-  while (tasks_in_flight_ < most) {
+  const auto most = static_cast<std::size_t>(2 * parts_.executor.concurrency() + 1);
+  while (in_flight_.size() < most) {
     const auto id = shares_.pick([this](const JobId& candidate) {
       const LiveJob* job = find(candidate);
       return job != nullptr && !job->ending && job->plan && job->plan->has_work();
@@ -149,7 +152,7 @@ void Scheduler::Core::dispatch_one(LiveJob& job) {
                      job.blocks.begin() + static_cast<std::ptrdiff_t>(item->end_block));
   task.item = std::move(*item);
   task.stop = job.stop.get_token();
-  ++tasks_in_flight_;
+  in_flight_.emplace(task.job, task.item.id);
   ++job.in_flight;
   parts_.executor.start(std::move(task), [this, strand = strand_](TileOutcome outcome) {
     post_on(strand, this, [this, held = std::move(outcome)]() mutable { finished_task(std::move(held)); });
@@ -165,7 +168,7 @@ void Scheduler::Core::count_idle(LiveJob& job, const TileOutcome& outcome) {
 }
 
 void Scheduler::Core::finished_task(TileOutcome outcome) {
-  --tasks_in_flight_;
+  if (in_flight_.erase({outcome.job, outcome.item.id}) == 0) return;  // answered before
   LiveJob* job = find(outcome.job);
   if (job != nullptr && !halted_) {
     --job->in_flight;
@@ -189,6 +192,7 @@ void Scheduler::Core::merge_outcome(LiveJob& job, const TileOutcome& outcome) {
   shares_.charge(job.snapshot.id, outcome.seconds - job.plan->expected_seconds(outcome.item));
   for (const render::TileResult& result : outcome.results) {
     render::merge(*job.film, result);
+    job.film->resolve(result.rect, job.picture);
     add_counts(statistics, result);
     rays_.add(static_cast<double>(rays_in(result)));
     non_finite_.add(static_cast<double>(result.stats.non_finite));

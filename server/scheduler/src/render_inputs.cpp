@@ -84,6 +84,14 @@ void warn_of_light_model(const render::RenderSettings& settings, const render::S
   }
 }
 
+std::uint64_t film_memory(const JobRequest& request) {
+  const std::uint64_t film = render::film_bytes(request.width, request.height);
+  const std::uint64_t picture = std::uint64_t{3 * sizeof(float)} *
+                                static_cast<std::uint64_t>(request.width) *
+                                static_cast<std::uint64_t>(request.height);
+  return film > UINT64_MAX - picture ? UINT64_MAX : film + picture;
+}
+
 Status check_camera(const CameraChoice& choice, const SceneReport& report) {
   if (auto index = camera_index(choice, report.cameras); !index) return index.error();
   return success();

@@ -61,6 +61,10 @@ void Scheduler::image(JobId id, std::string layer, Reply<JobImagePtr> reply) {
         core->image(id, layer, to);
       });
 }
+void Scheduler::replay_inputs(JobId id, Reply<ReplayInputs> reply) {
+  ask(*core_, reply,
+      [core = core_.get(), id = std::move(id)](const auto& to) { core->replay_inputs(id, to); });
+}
 void Scheduler::add_scene(std::unique_ptr<SceneUpload> upload, AddSceneOptions options,
                           Reply<AddedScene> reply) {
   // Closures are copied, an upload is not.

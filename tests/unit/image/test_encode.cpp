@@ -3,6 +3,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -42,6 +43,27 @@ TEST(EncodePng, KnownColoursRoundExactly) {
   const float inf = std::numeric_limits<float>::infinity();
   expect_png(grey_row({0.0F, 0.0031308F, 0.18F, 0.2140411F, 0.5F, 1.0F, 1.5F, -0.1F, nan, inf}), 0.0,
              {0, 10, 118, 127, 188, 255, 255, 0, 0, 255});
+}
+
+// Around every value at which the byte changes, and over the whole range, as the formula says.
+TEST(EncodePng, EveryByteIsThatOfTheFormula) {
+  const auto formula = [](double x) {
+    x = std::clamp(x, 0.0, 1.0);
+    const double curve = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+    return static_cast<int>(std::lround(255.0 * curve));
+  };
+  std::vector<float> values;
+  std::vector<int> expected;
+  for (int i = 0; i < 20'000; ++i) values.push_back(static_cast<float>(i) / 19'000.0F);
+  for (int byte = 0; byte < 255; ++byte) {
+    const double encoded = (byte + 0.5) / 255.0;
+    const double step = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    float near = static_cast<float>(step);
+    for (int i = 0; i < 3; ++i) near = std::nextafter(near, 0.0F);
+    for (int i = 0; i < 7; ++i, near = std::nextafter(near, 2.0F)) values.push_back(near);
+  }
+  for (const float value : values) expected.push_back(formula(static_cast<double>(value)));
+  expect_png(grey_row(values), 0.0, expected);
 }
 
 TEST(EncodePng, ExposureIsInStops) {

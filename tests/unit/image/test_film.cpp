@@ -102,6 +102,24 @@ TEST(Film, NonFiniteSamplesAreDroppedAndCountedPerKind) {
   EXPECT_NEAR(film.resolve().rgb[0], 2.0 / 3.0, 1e-6);
 }
 
+// Who resolves each tile after its fold has the same picture as who resolves the whole film.
+TEST(Film, ResolvesPartByPart) {
+  Film film(3, 2);
+  Image kept{.width = 3, .height = 2, .rgb = std::vector<float>(18)};
+  for (std::uint64_t b = 0; b < 3; ++b) {
+    for (const PixelRect part : {PixelRect{0, 0, 2, 1}, PixelRect{1, 1, 3, 2}}) {
+      BlockResult block{.block = sample_block(b), .planes = make_block_planes(2)};
+      for (std::size_t i = 0; i < 2 * block.block.count; ++i) {
+        const double x = static_cast<double>(i + b) + part.x0;
+        add_sample(block.planes, i % 2, {x, 2.0 * x, 0.5}, false);
+      }
+      film.fold(part, block);
+      film.resolve(part, kept);
+      EXPECT_EQ(kept.rgb, film.resolve().rgb);
+    }
+  }
+}
+
 TEST(Film, TileGoesToItsPlaceAndUnsampledPixelsStayBlack) {
   Film film(3, 2);
   BlockResult block{.block = sample_block(0), .planes = make_block_planes(2)};

@@ -25,6 +25,13 @@ struct EncodeError {
 [[nodiscard]] std::variant<Bytes, EncodeError> encode_exr(
     const Image& image, const std::map<std::string, std::string>& attributes);
 
+/// What half floats do to a picture.
+struct HalfRange {
+  std::uint64_t clamped = 0;   ///< values beyond +-65504
+  std::uint64_t vanished = 0;  ///< values other than 0 that become 0: at most 2^-25
+};
+[[nodiscard]] HalfRange half_range(const Image& image);
+
 /// The same in half floats, for half the bytes. They end at 65504: larger values, infinite ones too,
 /// are clamped to it and counted, so that no file holds an infinity that the picture does not.
 struct HalfExr {

@@ -132,6 +132,10 @@ class Film {
   /// Mean of all samples so far; black where there are none.
   [[nodiscard]] Image resolve() const;
 
+  /// The same for these pixels alone, into a picture of the film's size that holds the rest already:
+  /// who does so after each fold has a whole picture at any time without reading the whole film.
+  void resolve(const PixelRect& part, Image& into) const;
+
   /// A plane of film_planes() over the whole film with the incomplete blocks folded in; empty when
   /// there is no plane of that name.
   [[nodiscard]] std::vector<double> plane(std::string_view name) const;

@@ -40,6 +40,7 @@ class Api {
   [[nodiscard]] Answer cancel_job(const Request& request);
   [[nodiscard]] Answer watch_job(const Request& request);
   [[nodiscard]] Answer get_image(const Request& request);
+  [[nodiscard]] Answer replay_sample(const Request& request);
 
   [[nodiscard]] Answer livez(const Request& request);
   [[nodiscard]] Answer readyz(const Request& request);
@@ -52,6 +53,7 @@ class Api {
   Parts parts_;
   ImageCache images_;
   std::shared_ptr<std::atomic<int>> uploads_;  ///< in progress
+  std::atomic<int> replays_{0};                 ///< in progress
 };
 
 }  // namespace raykiln::server

@@ -18,6 +18,7 @@ struct PictureOptions {
   JobRequest request;  ///< without the scene
   std::string camera;  ///< name or index; empty: the first
   double exposure_stops = 0.0;
+  bool half = false;  ///< EXR in half floats
 };
 
 /// Which sample `replay` renders again.
@@ -67,7 +68,8 @@ struct ParsedCli {
 /// Reports what is questionable about a scene. kCheckFailed when a finding is an error.
 [[nodiscard]] ExitCode lint_command(const CliOptions& options);
 
-/// Renders one sample of one pixel again and prints its radiance, finite or not.
+/// Renders one sample of one pixel again and prints its radiance, finite or not: of a scene, here, or
+/// of a job, on its server, where SCENE is the id of a job and no such file is there.
 [[nodiscard]] ExitCode replay_command(const CliOptions& options);
 
 /// Judges a render by its reference. kImageDiffers when the noise of both does not explain the difference.

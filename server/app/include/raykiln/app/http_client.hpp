@@ -25,6 +25,9 @@ struct ClientResponse {
   int status = 0;
   std::vector<std::pair<std::string, std::string>> headers;
   std::string body;
+
+  /// First value of `name`, however its letters are cased, or null.
+  [[nodiscard]] const std::string* header(std::string_view name) const;
 };
 
 using ClientHeaders = std::vector<std::pair<std::string, std::string>>;

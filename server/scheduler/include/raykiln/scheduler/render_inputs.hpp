@@ -16,6 +16,9 @@ namespace raykiln::server {
 [[nodiscard]] Result<render::RenderSettings> render_settings(const JobRequest& request,
                                                              const render::Scene& scene);
 
+/// Bytes that a job's film and its picture take while it is active; saturates.
+[[nodiscard]] std::uint64_t film_memory(const JobRequest& request);
+
 /// Adds what the light model gets wrong in this scene ("heavy_tailed", "not_conserving_refraction"
 /// at "/light_model"); nothing that is there already.
 void warn_of_light_model(const render::RenderSettings& settings, const render::Scene& scene,

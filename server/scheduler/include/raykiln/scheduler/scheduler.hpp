@@ -63,6 +63,9 @@ class Scheduler {
   void watch(JobId id, std::function<void()> wake, Reply<std::unique_ptr<Subscription>> reply);
   /// The newest picture, resolved once per revision. `layer`: "beauty".
   void image(JobId id, std::string layer, Reply<JobImagePtr> reply);
+  /// What the job is rendered with. While its scene is not in memory: "scene_not_ready"
+  /// (kUnavailable), and preparing it has begun; "scene_not_found" when it was deleted.
+  void replay_inputs(JobId id, Reply<ReplayInputs> reply);
 
   // Scenes. Upload: store.begin_upload(), append() on the caller's thread, finish(), add_scene().
   /// Imports and validates, then commits; a known scene is answered at once.

@@ -70,6 +70,12 @@ struct JobImage {
 };
 using JobImagePtr = std::shared_ptr<const JobImage>;
 
+/// What a sample of a job is rendered again with; holds scene and tree while it lives.
+struct ReplayInputs {
+  std::shared_ptr<const render::PreparedScene> scene;
+  render::RenderSettings settings;
+};
+
 struct SchedulerStatus {
   bool accepting = true;
   std::size_t queued = 0, active = 0, watchers = 0;
