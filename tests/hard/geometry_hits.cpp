@@ -277,7 +277,7 @@ TEST(V15_NonFiniteRays, MissInBoundedTime) {
   Row row("V15", "NaN, Inf and zero in every field of 1e6 rays, 3 meshes",
           "a miss, counted; time <= 2.5x a normal ray");
   TestRandom random(1501);
-  std::uint64_t bad_hits = 0, bad_occluders = 0, steps = 0, n = 0;
+  std::uint64_t bad_hits = 0, bad_occluders = 0, steps = 0, n = 0, uncounted = 0;
   double worst = 0.0;
   for (const TestMesh& mesh : {test::terrain(100), icosphere(4), test::soup(10'000, 1)}) {
     const auto tree = build(mesh);
@@ -298,15 +298,24 @@ TEST(V15_NonFiniteRays, MissInBoundedTime) {
     for (const auto b : blocked) bad_occluders += b == render::Occlusion::kNone ? 0U : 1U;
     EXPECT_EQ(counters.rays, count);
     steps += counters.node_steps;
+    uncounted += count - counters.unusable_rays;
+    counters = {};
     render::closest_hits(*tree, std::span(bad).first(1000), hits, {},
-                         render::Traversal::kBruteForce);
+                         render::Traversal::kBruteForce, &counters);
+    uncounted += 1000 - counters.unusable_rays;
+    render::closest_hits(*tree, std::span(good).first(1000), hits, {}, render::Traversal::kTree,
+                         &counters);
+    EXPECT_EQ(counters.unusable_rays, 1000U) << "good rays are not counted";
+    render::closest_hits(*tree, std::span(bad).first(1000), hits);
     bad_hits += test::count_hits({hits.begin(), hits.begin() + 1000});
     n += count;
   }
   row.never("hits", bad_hits + bad_occluders, n);
   row.measured("time against a normal ray", worst);
   row.measured("node steps", steps);
+  row.never("not counted", uncounted, n);
   EXPECT_EQ(bad_hits + bad_occluders, 0U);
+  EXPECT_EQ(uncounted, 0U);
   EXPECT_LE(worst, 2.5);
 }
 

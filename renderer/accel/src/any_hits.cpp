@@ -11,7 +11,11 @@ Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, c
                   TraversalCounters& counters) {
   Occlusion found = Occlusion::kNone;
   ShearedRay sheared;
-  if (tree.box.empty() || !prepare(ray, sheared)) return found;
+  if (!prepare(ray, sheared)) {
+    ++counters.unusable_rays;
+    return found;
+  }
+  if (tree.box.empty()) return found;
   constexpr float kNoLimit = std::numeric_limits<float>::infinity();
   ScalarWalk walk(tree, ray, counters);
   walk.run(kNoLimit, [&](std::uint32_t first, std::uint32_t count) {

@@ -47,6 +47,7 @@ template <typename Test>
 void for_all_pairs(const KdTree& tree, std::span<const Ray> rays, TraversalCounters& counters,
                    Test&& test) {
   const std::vector<LiveRay> live = prepare_all(rays);
+  counters.unusable_rays += rays.size() - live.size();
   LeafBlock<kWidth> block;
   for (std::size_t i = 0; i < tree.triangles.size();) {
     i = gather_block(tree, i, block);

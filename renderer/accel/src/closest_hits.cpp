@@ -11,7 +11,11 @@ Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, con
                 const HitOrder* after, TraversalCounters& counters) {
   Hit best;
   ShearedRay sheared;
-  if (tree.box.empty() || !prepare(ray, sheared)) return best;
+  if (!prepare(ray, sheared)) {
+    ++counters.unusable_rays;
+    return best;
+  }
+  if (tree.box.empty()) return best;
   ScalarWalk walk(tree, ray, counters);
   walk.run(best.t, [&](std::uint32_t first, std::uint32_t count) {
     counters.block_tests += count;

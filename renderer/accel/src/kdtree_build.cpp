@@ -57,6 +57,7 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
   const std::size_t n = root.subtree.ids.size();
   root.subtree.budget = static_cast<std::uint64_t>((context.params.max_duplication - 1.0) *
                                                    static_cast<double>(n));
+  tree->stats.leaf_cost = context.params.k_i * static_cast<double>(n);
   const int cap = depth_cap(context.params.max_depth, n);
   const auto built = build_subtree(context, std::move(root.subtree), cap);
   if (context.stopped() || !lay_out(context, *built, *tree)) return nullptr;

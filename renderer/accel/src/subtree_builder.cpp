@@ -23,6 +23,7 @@ class SubtreeBuilder {
       stacks_.ids[i] = static_cast<std::uint32_t>(i);
     }
     root_ = {input.cell, {}, input.depth, input.budget, input.share};
+    note_live(0);
   }
 
   std::unique_ptr<Subtree> build() {
@@ -54,6 +55,7 @@ class SubtreeBuilder {
     left.box.hi[plane.axis] = right.box.lo[plane.axis] = plane.position;
     left.depth = right.depth = cell.depth + 1;
     right.begin = partition_.split(stacks_, cell.begin, cell.box, plane, result_->counts);
+    note_live(0);
     share_out(n, cell, left, right);
 
     std::array<std::uint32_t, 2> children{};
@@ -122,16 +124,36 @@ class SubtreeBuilder {
     return static_cast<std::uint32_t>(result_->nodes.size() - 1);
   }
 
+  [[nodiscard]] static std::uint64_t bytes_from(const StackMark& begin, const EventStacks& stacks) {
+    std::uint64_t bytes = (stacks.ids.size() - begin.ids) * sizeof(std::uint32_t);
+    for (std::size_t a = 0; a < 3; ++a) {
+      bytes += (stacks.events[a].size() - begin.events[a]) * sizeof(EventKey);
+    }
+    return bytes;
+  }
+
+  // `more` bytes stand beside what is on the stacks.
+  void note_live(std::uint64_t more) {
+    std::uint64_t& peak = result_->counts.live_bytes_peak;
+    peak = std::max(peak, bytes_from({}, stacks_) + more);
+  }
+
   std::array<std::uint32_t, 2> build_as_tasks(const Cell& left, const Cell& right) {
     std::array<SubtreeInput, 2> inputs;
     inputs[1] = take_top(right);
+    const std::uint64_t left_bytes = bytes_from(left.begin, stacks_);
     inputs[0] = take_top(left);
+    const std::uint64_t below = bytes_from({}, stacks_);
     if (stacks_.ids.empty()) stacks_ = {};  // gives the memory back while the tasks run
     std::array<std::unique_ptr<Subtree>, 2> built;
     const std::array<std::function<void()>, 2> tasks{
         [&] { built[0] = build_subtree(context_, std::move(inputs[0]), max_depth_); },
         [&] { built[1] = build_subtree(context_, std::move(inputs[1]), max_depth_); }};
     context_.runner.run(tasks);
+    // As one thread does it: the right one first, while the left one waits.
+    std::uint64_t& peak = result_->counts.live_bytes_peak;
+    peak = std::max({peak, below + left_bytes + built[1]->counts.live_bytes_peak,
+                     below + built[0]->counts.live_bytes_peak});
     return {link(std::move(built[0])), link(std::move(built[1]))};
   }
 

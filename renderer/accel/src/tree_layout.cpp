@@ -139,6 +139,7 @@ bool lay_out(BuildContext& context, const Subtree& root, KdTree& tree) {
   tree.stats.keys_sorted_passes += counts.keys_sorted_passes;
   tree.stats.clips += counts.clips;
   tree.stats.budget_reached = counts.budget_reached;
+  tree.stats.live_bytes_peak = counts.live_bytes_peak;  // holds that of linked subtrees
   return Layout(context, tree).run(root);
 }
 

@@ -44,11 +44,7 @@ void add(RenderStats& stats, const RenderStats& other) {
   stats.short_calls_while_many_live += other.short_calls_while_many_live;
   stats.traversal_seconds += other.traversal_seconds;
   stats.shading_seconds += other.shading_seconds;
-  stats.traversal.calls += other.traversal.calls;
-  stats.traversal.rays += other.traversal.rays;
-  stats.traversal.node_steps += other.traversal.node_steps;
-  stats.traversal.leaf_visits += other.traversal.leaf_visits;
-  stats.traversal.block_tests += other.traversal.block_tests;
+  stats.traversal += other.traversal;
 }
 
 double rays_of_one_path(int branches, int max_depth) {

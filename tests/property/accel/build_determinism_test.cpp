@@ -28,6 +28,7 @@ void expect_same(const KdTree& a, const KdTree& b) {
   EXPECT_EQ(s.keys_sorted_passes, t.keys_sorted_passes);
   EXPECT_EQ(s.clips, t.clips);
   EXPECT_EQ(s.budget_reached, t.budget_reached);
+  EXPECT_EQ(s.live_bytes_peak, t.live_bytes_peak);
 }
 
 TEST(BuildDeterminism, SameTreeForAnyNumberOfThreads) {

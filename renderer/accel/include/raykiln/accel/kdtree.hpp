@@ -40,9 +40,13 @@ struct BuildStats {
   std::uint64_t nodes = 0, inner_nodes = 0, leaves = 0, empty_leaves = 0, references = 0;
   std::uint64_t events_swept = 0, events_moved = 0, keys_sorted_passes = 0, clips = 0;
   std::uint64_t bytes = 0;
+  /// Most bytes of events and ids that wait or are in work at once, in the order of one thread: the
+  /// same for any runner.
+  std::uint64_t live_bytes_peak = 0;
   int depth = 0;
   bool budget_reached = false;  ///< the reference budget or the depth cap stopped a useful split
   double sah_cost = 0.0;        ///< expected cost of a random ray that meets the box
+  double leaf_cost = 0.0;       ///< the same if the whole tree were one leaf: testing everything
 };
 
 /// 8 bytes. Inner: split coordinate, (index of the left child << 2 | axis); the right child follows
@@ -75,10 +79,12 @@ struct HitOrder {
 /// Counts that do not jitter; summed into by every query that gets a pointer.
 struct TraversalCounters {
   std::uint64_t calls = 0, rays = 0, node_steps = 0, leaf_visits = 0, block_tests = 0;
+  std::uint64_t unusable_rays = 0;  ///< not finite, no direction, empty interval: can hit nothing
 
   TraversalCounters& operator+=(const TraversalCounters& other) {
     calls += other.calls;
     rays += other.rays;
+    unusable_rays += other.unusable_rays;
     node_steps += other.node_steps;
     leaf_visits += other.leaf_visits;
     block_tests += other.block_tests;
