@@ -239,6 +239,31 @@ TEST(D04, IndexBelowOneAndReversedWinding) {
   EXPECT_FALSE(fresnel_exact(std::cos(41.80 * kDegree), 1.0, 1.0 / 1.5).total_reflection);
 }
 
+// In a body of facets light wanders about until it meets one within the critical angle: the share
+// 1 - F_int = (1 - F)/n^2 of what meets a facet gets out. All but what the limit cuts off comes back, and
+// each path that is cut off carried exactly 1.
+TEST(D05, FacetedBall) {
+  Row row("D05", "ball of 528 facets, index 1.5, 2.4, 4 and 10, in a furnace of 1, limit as by default",
+          "furnace 1 but for the paths that are counted as truncated: at most 1 % at index 10, none up to 4", "physical");
+  for (const double n : {1.5, 2.4, 4.0, 10.0}) {
+    SmallScene s;
+    const auto glass = s.material(clear_glass(static_cast<float>(n)));
+    const TestMesh ball = test::sphere(24, 12);
+    for (std::size_t i = 0; i < ball.triangles.size(); ++i) {
+      const auto p = ball.corners(i);
+      s.triangle(p[0], p[1], p[2], glass);
+    }
+    s.scene().background = Rgb(1.0F);
+    s.look({0.3, 0.2, 4.0}, {0, 0, 0}, {0, 1, 0}, 0.3);
+    const Measured m = measure(s.scene(), square(16, kPhysicalModel), 32);
+    const double cut = static_cast<double>(m.stats.truncated) / static_cast<double>(m.stats.paths);
+    row.measured("index " + shown(n) + ": furnace", m.mean);
+    row.measured("cut off", cut);
+    EXPECT_NEAR(m.mean + cut, 1.0, 1e-5 + 4.0 * kUnit) << n;
+    EXPECT_LE(cut, n > 4.0 ? 0.01 : 0.0) << n;
+  }
+}
+
 TEST(D05, HugeIndex) {
   Row row("D05", "index 10, 1e3, 1e6, 1e20 and 3.4e38, and 1 over these: head on, at every angle, and a plate in a furnace of 1",
           "((n-1)/(n+1))^2; no NaN; furnace 1 within 4 sigma", "both");

@@ -248,4 +248,20 @@ Outcome a_million_samples() {
   return {error <= 1e-12, "relative error " + text(error)};
 }
 
+Outcome variance_of_close_samples() {
+  Film film(1, 1);
+  constexpr std::uint64_t kSamples = 100'000;
+  std::uint64_t count = 0;
+  for (const SampleBlock& block : blocks_for(kSamples)) {
+    BlockResult result{block, make_block_planes(1)};
+    for (std::uint64_t i = 0; i < block.count; ++i) {
+      add_sample(result.planes, 0, Rgbd(count++ % 2 == 0 ? 1000.01 : 999.99), false);
+    }
+    film.fold({0, 0, 1, 1}, result);
+  }
+  const double variance = film.plane("luminance_moment")[0] / static_cast<double>(kSamples);
+  const double error = std::abs(variance / 1e-4 - 1.0);
+  return {error <= 1e-6, "variance " + text(variance) + ", relative error " + text(error)};
+}
+
 }  // namespace raykiln::render::selftest

@@ -93,7 +93,7 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
       ->capture_default_str();
   add_stops(command, request);
   command.add_option("--depth", request.max_depth,
-                     "most reflections after the first hit (128 with roulette, else 8)")
+                     "most reflections after the first hit (1024 with roulette, else 8)")
       ->check(CLI::Range(0, limits.max_depth));
   add_light_model(command, request);
   command.add_option_function<std::string>(

@@ -232,6 +232,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
       {});
   auto tree = render::build_scene_tree(*loaded->scene, {}, *runner);
   const double build_seconds = since() - build_begun;
+  const render::BuildStats tree_stats = render::build_stats(*tree);
   LocalJob job(render::prepare(loaded->scene, std::move(tree)), *settings, request, pool);
   const double prepare_seconds = since();
   if (auto status = job.run(progress); !status) return status.error();
@@ -248,6 +249,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   picture.job.elapsed_seconds = since();
   picture.job.warnings = warnings_of(loaded->report);
   warn_of_light_model(*settings, *loaded->scene, picture.job.warnings);
+  warn_of_picture(*settings, *loaded->scene, tree_stats, picture.job.warnings);
   return picture;
 }
 

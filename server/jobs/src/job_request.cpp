@@ -150,7 +150,7 @@ std::optional<DirectionSampling> direction_sampling_named(std::string_view text)
 }
 
 int depth_limit(const JobRequest& request) {
-  constexpr int kRouletteLimit = 128, kFixedDepth = 8;
+  constexpr int kRouletteLimit = 1024, kFixedDepth = 8;
   if (request.max_depth) return *request.max_depth;
   const bool roulette = request.light_model_overrides.roulette.value_or(
       request.light_model == LightModel::kPhysical);

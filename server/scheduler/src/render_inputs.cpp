@@ -73,14 +73,25 @@ render::LightModel light_model_of(const JobRequest& request) {
   return m;
 }
 
+void add_once(JobWarning warning, std::vector<JobWarning>& warnings) {
+  const bool known = std::any_of(warnings.begin(), warnings.end(),
+                                 [&](const JobWarning& w) { return w.code == warning.code; });
+  if (!known) warnings.push_back(std::move(warning));
+}
+
 }  // namespace
 
 void warn_of_light_model(const render::RenderSettings& settings, const render::Scene& scene,
                          std::vector<JobWarning>& warnings) {
   for (const auto& found : render::light_model_warnings(settings.light_model, scene)) {
-    const bool known = std::any_of(warnings.begin(), warnings.end(),
-                                   [&](const JobWarning& w) { return w.code == found.code; });
-    if (!known) warnings.push_back({found.code, found.message, "/light_model"});
+    add_once({found.code, found.message, "/light_model"}, warnings);
+  }
+}
+
+void warn_of_picture(const render::RenderSettings& settings, const render::Scene& scene,
+                     const render::BuildStats& tree, std::vector<JobWarning>& warnings) {
+  for (const auto& found : render::render_notices(settings, scene, tree)) {
+    add_once({found.code, found.message, ""}, warnings);
   }
 }
 

@@ -33,7 +33,7 @@ TEST(JobRequestJson, FillsDefaults) {
   EXPECT_EQ(request->width, 64);
   EXPECT_EQ(request->stop.samples, 4U);
   EXPECT_EQ(request->max_depth, std::nullopt);
-  EXPECT_EQ(depth_limit(*request), 128);
+  EXPECT_EQ(depth_limit(*request), 1024);
   EXPECT_EQ(request->light_model, LightModel::kPhysical);
   EXPECT_EQ(request->tile, 64);
   EXPECT_EQ(request->priority, 10);

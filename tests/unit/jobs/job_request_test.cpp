@@ -116,12 +116,12 @@ TEST(LightModelOverrides, TextComesBackAsItWent) {
 
 TEST(LightModelOverrides, DecideTheDepthThatIsNotGiven) {
   JobRequest request;
-  EXPECT_EQ(depth_limit(request), 128);
+  EXPECT_EQ(depth_limit(request), 1024);
   request.light_model_overrides.roulette = false;
   EXPECT_EQ(depth_limit(request), 8);
   request.light_model = LightModel::kSeed;
   request.light_model_overrides.roulette = true;
-  EXPECT_EQ(depth_limit(request), 128);
+  EXPECT_EQ(depth_limit(request), 1024);
   request.branches = 2;
   EXPECT_EQ(depth_limit(request), 8);
   request.max_depth = 0;

@@ -79,5 +79,26 @@ TEST(Settings, FilmBytes) {
   EXPECT_GT(film_bytes(2147483647, 2147483647), std::uint64_t{1} << 62);
 }
 
+TEST(Notices, NameATreeWithoutBenefit) {
+  // Parallel oblique sheets: no plane separates them.
+  for (const int n : {12, 50, 200}) {
+    support::SceneBuilder b;
+    const auto white = b.material(support::diffuse_material(Rgb(0.5F)));
+    for (int i = 0; i < n; ++i) {
+      const float s = 1.0F + static_cast<float>(i) * 1e-3F;
+      b.triangle({s, 0, 0}, {0, s, 0}, {0, 0, s}, white);
+    }
+    b.camera({2, 2, 2}, {0, 0, 0}, {0, 1, 0}, 0.7);
+    SerialTaskRunner runner;
+    const auto tree = build_scene_tree(b.scene(), {}, runner);
+    const auto notices = render_notices({}, b.scene(), build_stats(*tree));
+    ASSERT_EQ(notices.size(), n < 32 ? 0U : 1U) << n;
+    if (n >= 32) EXPECT_EQ(notices[0].code, "tree_no_benefit");
+  }
+  const Scene room = support::mixed_room().scene();
+  SerialTaskRunner runner;
+  EXPECT_TRUE(render_notices({}, room, build_stats(*build_scene_tree(room, {}, runner))).empty());
+}
+
 }  // namespace
 }  // namespace raykiln::render

@@ -42,7 +42,9 @@ inline constexpr int kLargestDepth = 4096;       ///< reflections after the firs
 inline constexpr int kMostBranches = 64;         ///< rays shot from each hit
 inline constexpr double kMostRaysOfPath = 65536; ///< 1 + b + b^2 + ... of the seed's tree
 
-inline constexpr int kRouletteLimit = 128;  ///< hard limit of paths that roulette ends, if unset
+/// Hard limit of paths that roulette ends, if unset. Lossless traps never lose throughput: of the light
+/// that gets into a faceted body of index n, (1 - (1 - F)/n^2)^limit is cut off.
+inline constexpr int kRouletteLimit = 1024;
 inline constexpr int kFixedDepth = 8;       ///< depth of all other paths, if unset
 
 /// Reflections after the first hit at which every path ends. What is cut off there while it could go
@@ -66,6 +68,16 @@ struct LightModelWarning {
 
 /// Which effects these settings simulate in this scene, and why. The first walks all triangles.
 [[nodiscard]] EffectPlan effect_plan(const RenderSettings& settings, const Scene& scene);
+
+/// What is worth knowing beside a picture: "tree_no_benefit" where no split of the tree pays, and
+/// "unresolved_sharp_highlight" where mirrors show point lights smaller than samples can find.
+/// Precondition: settings_error() is nothing.
+struct RenderNotice {
+  std::string code;
+  std::string message;
+};
+[[nodiscard]] std::vector<RenderNotice> render_notices(const RenderSettings& settings,
+                                                       const Scene& scene, const BuildStats& tree);
 
 /// Scene and tree with what shading needs beside them (emitter distribution, ...). Immutable; shared
 /// by all threads.

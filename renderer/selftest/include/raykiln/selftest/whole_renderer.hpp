@@ -1,5 +1,5 @@
 // Checks of everything together: furnaces (T01, T02), trees and edges (K01, V03), scale, tree and
-// light (X01, X03, X04), bad and many samples (M03, M04).
+// light (X01, X03, X04), bad, many and close samples (M03-M05).
 #pragma once
 
 #include "raykiln/selftest/measure.hpp"
@@ -27,5 +27,7 @@ namespace raykiln::render::selftest {
 [[nodiscard]] Outcome bad_samples_counted();
 /// M04: a million ones in one pixel.
 [[nodiscard]] Outcome a_million_samples();
+/// M05: the variance of samples that differ in their sixth digit.
+[[nodiscard]] Outcome variance_of_close_samples();
 
 }  // namespace raykiln::render::selftest

@@ -64,7 +64,7 @@ struct JobRequest {
 [[nodiscard]] std::optional<PixelMode> pixel_mode_named(std::string_view name);
 [[nodiscard]] std::optional<DirectionSampling> direction_sampling_named(std::string_view name);
 
-/// Reflections after the first hit at which paths end: as asked for, else 128 where roulette ends
+/// Reflections after the first hit at which paths end: as asked for, else 1024 where roulette ends
 /// them before (one ray a hit), else 8.
 [[nodiscard]] int depth_limit(const JobRequest& request);
 

@@ -24,4 +24,9 @@ namespace raykiln::server {
 void warn_of_light_model(const render::RenderSettings& settings, const render::Scene& scene,
                          std::vector<JobWarning>& warnings);
 
+/// Adds what the tree and the sampling cannot help ("tree_no_benefit", "unresolved_sharp_highlight");
+/// nothing that is there already.
+void warn_of_picture(const render::RenderSettings& settings, const render::Scene& scene,
+                     const render::BuildStats& tree, std::vector<JobWarning>& warnings);
+
 }  // namespace raykiln::server

@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "raykiln/render/render.hpp"
+
+namespace raykiln::render {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Below this a leaf is as good as a tree, and nobody waits for it.
+constexpr double kFewTriangles = 32.0;
+constexpr double kManyTriangles = 1000.0;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
+// Expected costs of a random ray, of the tree and of one leaf with everything in it.
+bool gives_no_benefit(const BuildStats& tree) {
+  const auto n = static_cast<double>(tree.triangles);
+  const double ratio = tree.leaf_cost > 0.0 ? tree.sah_cost / tree.leaf_cost : 0.0;
+  return (n >= kFewTriangles && ratio >= 0.9) || (n >= kManyTriangles && ratio >= 0.5);
+}
+
+double pixel_solid_angle(const Camera& camera, int height_px) {
+  const double side = 2.0 * std::tan(0.5 * camera.fov_y_rad) / height_px;
+  return side * side;
+}
+
+/// Of a pixel: where a highlight is smaller, a sample finds it with less than this probability.
+constexpr double kLeastShare = 1.0 / 16.0;
+
+// A lobe of exponent e fills the solid angle 2 pi / (e + 1); the mirror image of a point light is no
+// larger. Emitting triangles are found by the path's own rays and do not count.
+std::size_t unresolved_mirrors(const RenderSettings& settings, const Scene& scene) {
+  const bool lit = std::any_of(
+      scene.point_lights.begin(), scene.point_lights.end(),
+      [](const PointLight& light) { return light.intensity != Rgb(0.0F); });
+  if (!lit) return 0;
+  const Camera& camera = settings.own_camera
+                             ? *settings.own_camera
+                             : scene.cameras[static_cast<std::size_t>(settings.camera)];
+  const double least = kLeastShare * pixel_solid_angle(camera, settings.height);
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const std::uint32_t id : scene.mesh.material_ids) used[id] = true;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const Material& m = scene.materials[i];
+    const bool mirrors = used[i] && std::max({m.specular.x, m.specular.y, m.specular.z}) > 0.0F;
+    found += mirrors && 2.0 * kPi / (m.specular_exp + 1.0) < least ? 1U : 0U;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<RenderNotice> render_notices(const RenderSettings& settings, const Scene& scene,
+                                         const BuildStats& tree) {
+  std::vector<RenderNotice> notices;
+  if (gives_no_benefit(tree)) {
+    notices.push_back({"tree_no_benefit",
+                       "the tree gives no benefit here: its expected cost is " + number(tree.sah_cost) +
+                           ", that of testing all " + std::to_string(tree.triangles) +
+                           " triangles for every ray " + number(tree.leaf_cost)});
+  }
+  if (const std::size_t mirrors = unresolved_mirrors(settings, scene); mirrors > 0) {
+    notices.push_back({"unresolved_sharp_highlight",
+                       "unresolved sharp highlight: " + std::to_string(mirrors) +
+                           " materials mirror point lights in less than 1/16 of a pixel; samples seldom "
+                           "find these highlights, so light may be missing where no noise is seen"});
+  }
+  return notices;
+}
+
+}  // namespace raykiln::render
