@@ -93,11 +93,19 @@ TEST(Notices, NameATreeWithoutBenefit) {
     const auto tree = build_scene_tree(b.scene(), {}, runner);
     const auto notices = render_notices({}, b.scene(), build_stats(*tree));
     ASSERT_EQ(notices.size(), n < 32 ? 0U : 1U) << n;
-    if (n >= 32) EXPECT_EQ(notices[0].code, "tree_no_benefit");
+    if (n >= 32) {
+      EXPECT_EQ(notices[0].code, "tree_no_benefit");
+    }
   }
-  const Scene room = support::mixed_room().scene();
+  // A room with a sharp mirror and a point light has the other notice; without the light it has none.
+  Scene room = support::mixed_room().scene();
   SerialTaskRunner runner;
-  EXPECT_TRUE(render_notices({}, room, build_stats(*build_scene_tree(room, {}, runner))).empty());
+  const auto tree = build_scene_tree(room, {}, runner);
+  const auto notices = render_notices({}, room, build_stats(*tree));
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_EQ(notices[0].code, "unresolved_sharp_highlight");
+  room.point_lights.clear();
+  EXPECT_TRUE(render_notices({}, room, build_stats(*tree)).empty());
 }
 
 }  // namespace
