@@ -30,7 +30,7 @@ def test_life_of_a_job(api, samples):
 
 def test_the_request_comes_back_with_its_defaults(api, samples):
     request = api.submit(samples["box"]).json()["request"]
-    assert request["light_model"] == "physical" and request["max_depth"] == 128
+    assert request["light_model"] == "physical" and request["max_depth"] == 1024
     assert request["light_model_overrides"] == {}
     assert (request["tile"], request["priority"], request["seed"]) == (64, 10, 0)
     assert (request["branches"], request["emitter_sampling"]) == (1, True)
