@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "raykiln/render/render.hpp"
-#include "raykiln/scene/scene.hpp"
+#include "raykiln/selftest/small_scene.hpp"
 
 namespace raykiln::render::support {
 
@@ -33,72 +33,23 @@ inline Material glass_material(float index, double exponent) {
   return material;
 }
 
-/// Collects triangles and hands out the finished scene.
-class SceneBuilder {
+/// The product's own builder of small scenes, which also hands out the prepared one.
+class SceneBuilder : public selftest::SmallScene {
  public:
-  std::uint32_t material(const Material& material) {
-    scene_.materials.push_back(material);
-    return static_cast<std::uint32_t>(scene_.materials.size() - 1);
-  }
-
-  void triangle(const Vec3f& a, const Vec3f& b, const Vec3f& c, std::uint32_t material) {
-    const auto first = static_cast<std::uint32_t>(scene_.mesh.positions.size());
-    for (const Vec3f& p : {a, b, c}) {
-      scene_.mesh.positions.push_back(p);
-      scene_.bounds.grow(p);
-    }
-    scene_.mesh.triangles.push_back({first, first + 1, first + 2});
-    scene_.mesh.material_ids.push_back(material);
-  }
-
-  /// Corners counter-clockwise seen from the side that the normal faces.
-  void quad(const std::array<Vec3f, 4>& p, std::uint32_t material) {
-    triangle(p[0], p[1], p[2], material);
-    triangle(p[0], p[2], p[3], material);
-  }
-
-  /// Axis-parallel box; normals face outwards, or inwards for a room.
-  void box(const Vec3f& lo, const Vec3f& hi, std::uint32_t material, bool inwards = false) {
-    const auto corner = [&](int i) {
-      return Vec3f((i & 1) != 0 ? hi.x : lo.x, (i & 2) != 0 ? hi.y : lo.y,
-                   (i & 4) != 0 ? hi.z : lo.z);
-    };
-    constexpr std::array<std::array<int, 4>, 6> kFaces{{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-    for (const auto& f : kFaces) {
-      if (inwards) {
-        quad({corner(f[3]), corner(f[2]), corner(f[1]), corner(f[0])}, material);
-      } else {
-        quad({corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])}, material);
-      }
-    }
-  }
-
-  void point_light(const Vec3f& position, const Rgb& intensity) {
-    scene_.point_lights.push_back({.name = "", .position = position, .intensity = intensity});
-  }
-
-  /// A camera at `eye` that looks at `target`; `up` must not be parallel to that.
+  /// A camera at `eye` that looks at `target`, beside those there are; `up` must not be parallel to
+  /// that.
   void camera(const Vec3d& eye, const Vec3d& target, const Vec3d& up, double fov_y_rad) {
-    Camera camera;
-    camera.eye = eye;
-    camera.forward = normalize(target - eye);
-    camera.right = normalize(cross(camera.forward, up));
-    camera.up = cross(camera.right, camera.forward);
-    camera.fov_y_rad = fov_y_rad;
-    scene_.cameras.push_back(camera);
+    std::vector<Camera> cameras = scene().cameras;
+    look(eye, target, up, fov_y_rad);
+    cameras.push_back(scene().cameras.front());
+    scene().cameras = std::move(cameras);
   }
-
-  Scene& scene() { return scene_; }
 
   [[nodiscard]] std::shared_ptr<const PreparedScene> prepare(const BuildParams& params = {}) const {
-    auto scene = std::make_shared<const Scene>(scene_);
+    auto shared = std::make_shared<const Scene>(scene());
     SerialTaskRunner runner;
-    return render::prepare(scene, build_scene_tree(*scene, params, runner));
+    return render::prepare(shared, build_scene_tree(*shared, params, runner));
   }
-
- private:
-  Scene scene_;
 };
 
 /// A closed room of two coloured walls with a light in the ceiling, a glass and a mirror box and a
