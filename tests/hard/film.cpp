@@ -108,7 +108,7 @@ Scene furnace(float albedo) {
 
 TEST(F03, OddImageShapes) {
   Row row("F03", "furnace of 1x1, 1x4096, 4096x1, 3x3, 7x5 pixels, whole and by windows that touch the border",
-          "every pixel exactly spp samples; mean E/(1 - rho), 4 sigma and the cut of depth 64");
+          "every pixel exactly spp samples; mean E/(1 - rho), 4 sigma and the cut of depth 64", "physical");
   const Scene scene = furnace(0.5F);
   const auto shared = std::make_shared<const Scene>(scene);
   SerialTaskRunner runner;
