@@ -47,7 +47,7 @@ def test_help_names_the_commands_and_exit_codes():
     shown = raykiln("--help")
     assert shown.returncode == 0
     for word in ("render", "submit", "watch", "fetch", "cancel", "scenes", "jobs", "health",
-                 "selftest", "lint", "replay", "compare"):
+                 "selftest", "lint", "effects", "replay", "compare"):
         assert word in shown.stdout, word
     assert "exit" in shown.stdout.lower(), "the exit codes belong to the help"
 
@@ -218,6 +218,26 @@ def test_selftest_passes_on_this_binary():
     assert done.returncode == 0 and report["failed"] == 0, failed
     assert report["checks"] == len(report["rows"]) >= 20
     assert {"T03", "T14", "V03", "X01", "X03"} <= {row["id"] for row in report["rows"]}
+
+
+def test_effects_says_what_is_simulated_and_why(folder, tmp_path):
+    report = json.loads(raykiln("effects", folder / "box.obj", "--json").stdout)
+    verdicts = {line["effect"]: line for line in report["list"]}
+    assert report["label"] == "auto" and all(line["evidence"] for line in report["list"])
+    assert verdicts["diffuse_reflection"]["simulated"]
+    assert verdicts["refraction"]["grade"] == "identical" and verdicts["refraction"]["left_out"]
+    assert "diffuse_reflection" in raykiln("effects", folder / "box.obj").stdout
+    assert raykiln("effects", folder / "box.obj", "--effects", "without=moire").returncode == 2
+
+    words = ("--size", "16x12", "--samples", 2)
+    pictures = [tmp_path / name for name in ("auto.png", "all.png", "draft.png")]
+    for picture, choice in zip(pictures, ("auto", "all", "without=diffuse_reflection")):
+        done = raykiln("render", folder / "box.obj", "-o", picture, "--effects", choice, *words)
+        assert done.returncode == 0, done.stderr
+    assert "lacks what the scene calls for" in done.stderr
+    same, also, draft = (picture.read_bytes() for picture in pictures)
+    assert same == also and draft != same
+    assert b"Deliberate approximation" in draft and b"Deliberate" not in same
 
 
 def test_lint_of_a_sound_scene(folder):

@@ -82,6 +82,20 @@ void complete_stops(const CLI::App& command, JobRequest& request) {
   if (stop.error && !stop.seconds) stop.seconds = kDefaultErrorSeconds;
 }
 
+void add_effects(CLI::App& command, PictureOptions& picture) {
+  command.add_option_function<std::string>(
+      "--effects",
+      [&picture](const std::string& text) {
+        const auto choice = render::effect_choice_of(text);
+        if (!choice) {
+          throw CLI::ValidationError(
+              "--effects is auto, all, or without= and names that `raykiln effects` lists");
+        }
+        picture.effects = *choice;
+      },
+      "auto: what the scene calls for; all; or without=refraction,... (auto)");
+}
+
 constexpr const char* kSceneFiles = ".obj, .gltf, .glb, .zip or a folder";
 
 void add_picture_options(CLI::App& command, CliOptions& options, const char* what = kSceneFiles) {
@@ -160,7 +174,12 @@ void add_commands(CLI::App& app, CliOptions& options) {
   auto* render = app.add_subcommand("render", "render a scene here, without a server");
   add_picture_options(*render, options);
   add_output(*render, options, true);
+  add_effects(*render, options.picture);
   render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
+
+  auto* effects = app.add_subcommand("effects", "list what a scene calls for, what is simulated, and why");
+  add_picture_options(*effects, options);
+  add_effects(*effects, options.picture);
 
   auto* lint = app.add_subcommand("lint", "report what is questionable about a scene");
   lint->add_option("SCENE", options.scene, kSceneFiles)->required();
@@ -235,6 +254,7 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
 ExitCode run_cli(const CliOptions& options) {
   if (options.command == "render") return render_command(options);
   if (options.command == "lint") return lint_command(options);
+  if (options.command == "effects") return effects_command(options);
   if (options.command == "replay") return replay_command(options);
   if (options.command == "compare") return compare_command(options);
   if (options.command == "selftest") return selftest_command(options);

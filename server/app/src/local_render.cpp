@@ -209,7 +209,8 @@ std::vector<JobWarning> warnings_of(const SceneReport& report) {
 }  // namespace
 
 Result<LocalPicture> render_locally(const ScenePackage& package, const JobRequest& request,
-                                    LocalPool& pool, const std::filesystem::path& scratch,
+                                    const render::EffectChoice& effects, LocalPool& pool,
+                                    const std::filesystem::path& scratch,
                                     const std::function<void(const ProgressState&)>& progress) {
   const auto begun = Steady::now();
   const auto since = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
@@ -221,8 +222,9 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
       limits, [&scratch] { return Result<std::filesystem::path>(scratch); });
   auto loaded = intake->load(package.kind, package.files, {});
   if (!loaded) return loaded.error();
-  const auto settings = render_settings(request, *loaded->scene);
+  auto settings = render_settings(request, *loaded->scene);
   if (!settings) return settings.error();
+  settings->effects = effects;
 
   const auto build_begun = since();
   const auto runner = pool.task_runner(
@@ -249,6 +251,13 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   picture.job.elapsed_seconds = since();
   picture.job.warnings = warnings_of(loaded->report);
   warn_of_light_model(*settings, *loaded->scene, picture.job.warnings);
+  picture.effects = render::effect_plan(*settings, *loaded->scene);
+  if (!picture.effects.approximated().empty()) {
+    picture.job.warnings.push_back({"deliberate_approximation",
+                                    "the picture lacks what the scene calls for: " +
+                                        render::effects_label(picture.effects),
+                                    "--effects"});
+  }
   warn_of_picture(*settings, *loaded->scene, tree_stats, picture.job.warnings);
   return picture;
 }

@@ -29,6 +29,7 @@ std::map<std::string, std::string> attributes(const LocalPicture& picture, const
           {"raykiln:seed", std::to_string(job.request.seed)},
           {"raykiln:samples", std::to_string(job.progress.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(job.request))},
+          {"raykiln:effects", render::effects_label(picture.effects)},
           {"raykiln:seconds", std::to_string(job.elapsed_seconds)},
           {"raykiln:version", RAYKILN_VERSION}};
 }
@@ -59,11 +60,17 @@ void say_bad_samples(const CliOptions& options, const JobStatistics& statistics)
   }
 }
 
+/// A PNG says of itself when it is no picture of the whole scene.
+std::string png_note(const render::EffectPlan& plan) {
+  return plan.approximated().empty() ? "" : "Deliberate approximation: effects " + render::effects_label(plan);
+}
+
 ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
                         const std::string& scene) {
   for (const auto& output : options.outputs) {
     const auto encoded = output.extension() == ".png"
-                             ? render::encode_png(picture.image, options.picture.exposure_stops)
+                             ? render::encode_png(picture.image, options.picture.exposure_stops,
+                                                  png_note(picture.effects))
                              : exr(options, picture, scene, output);
     std::optional<std::string> error;
     if (const auto* failure = std::get_if<render::EncodeError>(&encoded)) {
@@ -120,7 +127,7 @@ ExitCode render_command(const CliOptions& options) {
   workers.threads = options.threads;
   LocalPool pool(workers);
   ProgressLine line(std::cerr, isatty(STDERR_FILENO) != 0, options.quiet);
-  auto picture = render_locally(*package, request, pool, scratch.path(),
+  auto picture = render_locally(*package, request, options.picture.effects, pool, scratch.path(),
                                 [&line](const ProgressState& state) { line.show(state); });
   line.finish();
   if (!picture) return complain(picture.error());

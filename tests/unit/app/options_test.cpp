@@ -54,6 +54,15 @@ TEST(CliOptions, ReadsStops) {
   EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--seconds", "0"}).exit_code, 2);
 }
 
+TEST(CliOptions, ReadsEffects) {
+  const auto parsed = cli({"effects", "a.obj", "--effects", "without=roulette,refraction"});
+  ASSERT_EQ(parsed.exit_code, -1);
+  EXPECT_EQ(render::effect_choice_text(parsed.options.picture.effects), "without=refraction,roulette");
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--effects", "all"}).options.picture.effects.mode,
+            render::EffectChoice::Mode::kAll);
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--effects", "some"}).exit_code, 2);
+}
+
 TEST(CliOptions, ReadsRender) {
   const auto parsed = cli({"render", "a.obj", "-o", "a.exr", "-o", "a.png", "--size", "320x200", "--samples", "7",
                            "--camera", "2", "--threads", "3"});

@@ -9,6 +9,7 @@
 
 #include "raykiln/app/comparison.hpp"
 #include "raykiln/app/exit_code.hpp"
+#include "raykiln/effects/effect_choice.hpp"
 #include "raykiln/jobs/job_request.hpp"
 
 namespace raykiln::server {
@@ -18,6 +19,7 @@ struct PictureOptions {
   JobRequest request;  ///< without the scene
   std::string camera;  ///< name or index; empty: the first
   double exposure_stops = 0.0;
+  render::EffectChoice effects;  ///< what is rendered here; jobs of a server simulate what is called for
   bool half = false;  ///< EXR in half floats
 };
 
@@ -67,6 +69,9 @@ struct ParsedCli {
 
 /// Reports what is questionable about a scene. kCheckFailed when a finding is an error.
 [[nodiscard]] ExitCode lint_command(const CliOptions& options);
+
+/// Lists the effects that a scene calls for with these settings, and what is left out.
+[[nodiscard]] ExitCode effects_command(const CliOptions& options);
 
 /// Renders one sample of one pixel again and prints its radiance, finite or not: of a scene, here, or
 /// of a job, on its server, where SCENE is the id of a job and no such file is there.

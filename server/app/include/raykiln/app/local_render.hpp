@@ -5,6 +5,7 @@
 
 #include "raykiln/app/progress.hpp"
 #include "raykiln/app/scene_package.hpp"
+#include "raykiln/effects/effect_plan.hpp"
 #include "raykiln/image/film.hpp"
 #include "raykiln/jobs/job_snapshot.hpp"
 #include "raykiln/workers/local_pool.hpp"
@@ -13,13 +14,15 @@ namespace raykiln::server {
 
 struct LocalPicture {
   render::Image image;
+  render::EffectPlan effects;  ///< what was simulated, and why
   JobSnapshot job;  ///< completed, with statistics and warnings; its id is empty
 };
 
 /// Errors: those of the intake (the scene is wrong), "invalid_request" (settings, camera), and
 /// "worker_failed". `scratch`: an existing folder for unpacking.
 [[nodiscard]] Result<LocalPicture> render_locally(
-    const ScenePackage& package, const JobRequest& request, LocalPool& pool,
+    const ScenePackage& package, const JobRequest& request, const render::EffectChoice& effects,
+    LocalPool& pool,
     const std::filesystem::path& scratch, const std::function<void(const ProgressState&)>& progress);
 
 }  // namespace raykiln::server
