@@ -61,6 +61,8 @@ class Replayer:
             documented = {status: {"$ref": "#/components/responses/Problem"}}
         response = resolve(documented[status])
         for name, header in response.get("headers", {}).items():
+            if header.get("required") is False and name not in answer.headers:
+                continue
             assert name in answer.headers, f"{operation['operationId']} {status}: no {name}"
             schema = resolve(header).get("schema", {})
             if schema.get("type") == "integer":
@@ -147,6 +149,8 @@ def replay_jobs(replay, scene) -> str:
     replay("get", "/v1/jobs/{job}", 404, {"job": "j_none"})
     replay("get", "/v1/jobs", 200, params={"state": "completed"})
     replay("get", "/v1/jobs", 400, params={"state": "asleep"})
+    replay("get", "/v1/jobs/{job}/accuracy", 200, {"job": job})
+    replay("get", "/v1/jobs/{job}/accuracy", 404, {"job": "j_none"})
     replay("post", "/v1/jobs/{job}/cancel", 409, {"job": job})
     endless = replay(*create, 202, json={**request, "width": 512, "height": 512,
                                          "stop": {"samples": 1048576}}).json()["id"]

@@ -1,7 +1,7 @@
 // Typed client of the server's HTTP API. Every failure is a Problem.
 
 import {
-  is_job, is_scene, type Job, type JobPage, type JobRequest, type Scene,
+  is_job, is_scene, type Job, type JobAccuracy, type JobPage, type JobRequest, type Layer, type Scene,
 } from "./contract";
 import { parse_problem, Problem, unreachable } from "./problem";
 import type { UploadPlan } from "./upload_list";
@@ -86,8 +86,15 @@ function as_job(value: unknown): Job {
 
 export const job_path = (id: string): string => `/v1/jobs/${encodeURIComponent(id)}`;
 
-export function image_url(id: string, format: "png" | "exr", exposure = 0, revision?: number): string {
+export async function get_accuracy(id: string): Promise<JobAccuracy> {
+  return (await json(`${job_path(id)}/accuracy`)) as JobAccuracy;
+}
+
+export function image_url(
+  id: string, format: "png" | "exr", exposure = 0, revision?: number, layer: Layer = "beauty",
+): string {
   const query = new URLSearchParams({ format });
+  if (layer !== "beauty") query.set("layer", layer);
   if (exposure !== 0) query.set("exposure", String(exposure));
   if (revision !== undefined) query.set("rev", String(revision));
   return `${job_path(id)}/image?${query}`;

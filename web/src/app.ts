@@ -3,7 +3,7 @@
 
 import { announcement } from "./announce";
 import * as api from "./api";
-import { is_final, type Job } from "./contract";
+import { is_final, type Job, type Layer } from "./contract";
 import { follow_job, type Following } from "./events";
 import { check_form, from_job, place_errors, to_request, type FormKey } from "./form";
 import { ImageFeed } from "./image";
@@ -18,6 +18,7 @@ import { kExposureRange } from "./view/job_page";
 import { Shell } from "./view/shell";
 
 const kExposureSettleMs = 120;
+const kAccuracyPaceMs = 2000;
 
 export class App implements Commands {
   private state_: State;
@@ -29,6 +30,7 @@ export class App implements Commands {
   private next_upload_ = 1;
   private drawing_ = false;
   private exposure_timer_ = 0;
+  private accuracy_asked_ms_ = Number.NEGATIVE_INFINITY;
   /** A deleted scene is asked for once, not with every event of its job. */
   private asked_scenes_ = new Set<string>();
   private submission_ = { body: "", key: "" };
@@ -37,6 +39,7 @@ export class App implements Commands {
     this.state_ = initial_state(parse_route(location.pathname), Date.now());
     this.shell_ = new Shell(root, this);
     this.image_ = new ImageFeed(this.shell_.job.picture);
+    this.image_.on_range = (range) => this.dispatch({ type: "range", range });
   }
 
   start(): void {
@@ -141,6 +144,7 @@ export class App implements Commands {
     const text = announcement(before, kept);
     if (text) this.shell_.say(text);
     this.want_image(kept);
+    this.want_accuracy(kept);
     if (is_final(kept.state)) {
       this.dispatch({ type: "line", line: { state: "ended", retry_at_ms: 0, reason: "" } });
       void this.load_scene(kept.scene); // its tree is known by now
@@ -153,8 +157,20 @@ export class App implements Commands {
     const route = this.state_.route;
     if (route.page !== "job" || route.id !== job.id || !job.image) return;
     this.image_.want({
-      job: job.id, revision: job.image.revision, exposure: this.state_.exposure,
+      job: job.id, revision: job.image.revision, exposure: this.state_.exposure, layer: this.state_.layer,
     }, urgent || is_final(job.state));
+  }
+
+  /** The curve of the job on the page: at most every two seconds, and once more at its end. */
+  private want_accuracy(job: Job): void {
+    const route = this.state_.route;
+    if (route.page !== "job" || route.id !== job.id || !job.accuracy) return;
+    const now = performance.now();
+    if (!is_final(job.state) && now - this.accuracy_asked_ms_ < kAccuracyPaceMs) return;
+    this.accuracy_asked_ms_ = now;
+    api.get_accuracy(job.id).then(
+      (accuracy) => this.dispatch({ type: "accuracy", job: job.id, accuracy }),
+      () => undefined); // the next event asks again
   }
 
   cancel(id: string): void {
@@ -286,6 +302,13 @@ export class App implements Commands {
       const job = route.page === "job" ? this.state_.jobs[route.id] : undefined;
       if (job) this.want_image(job, true);
     }, kExposureSettleMs);
+  }
+
+  set_layer(layer: Layer): void {
+    this.dispatch({ type: "layer", value: layer });
+    const route = this.state_.route;
+    const job = route.page === "job" ? this.state_.jobs[route.id] : undefined;
+    if (job) this.want_image(job, true);
   }
 
   set_zoom(zoom: "fit" | "actual"): void {

@@ -69,6 +69,34 @@ export interface Accuracy {
   target_reached: boolean | null;
 }
 
+export interface SecondsRange {
+  value: number;
+  low: number;
+  high: number;
+}
+
+/** Error against time, and what is expected of it. */
+export interface JobAccuracy {
+  points: { render_seconds: number; samples: number; error: Figure | null }[];
+  slope: { value: number; standard_error: number } | null;
+  seconds_to_halve_error: SecondsRange | null;
+  target: number | null;
+  seconds_to_target: SecondsRange | null;
+  forecasts: { hit: boolean | null }[];
+  tile_samples: number[] | null;
+}
+
+/** What the stage shows: the picture or one of its maps. */
+export const kLayers = ["beauty", "error", "samples", "seconds"] as const;
+export type Layer = (typeof kLayers)[number];
+
+/** What the colours of a map stand for. */
+export interface MapRange {
+  low: number;
+  high: number;
+  scale: string;
+}
+
 export interface Job {
   id: string;
   scene: string;

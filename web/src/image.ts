@@ -4,8 +4,15 @@
 
 import { image_url } from "./api";
 import { backoff_ms } from "./backoff";
+import type { MapRange } from "./contract";
 import { ImagePolicy, pace_ms, type Wanted } from "./image_policy";
 import type { Picture } from "./view/picture";
+
+function range_of(headers: Headers): MapRange | null {
+  const scale = headers.get("Raykiln-Scale");
+  if (scale === null) return null;
+  return { low: Number(headers.get("Raykiln-Low")), high: Number(headers.get("Raykiln-High")), scale };
+}
 
 export class ImageFeed {
   private policy_ = new ImagePolicy();
@@ -14,6 +21,9 @@ export class ImageFeed {
   private held_back_ = 0;
   private begun_ms_ = Number.NEGATIVE_INFINITY;
   private last_ms_ = 0;
+
+  /** Called with what the colours of a map stand for; null for the picture itself. */
+  on_range: (range: MapRange | null) => void = () => undefined;
 
   constructor(private picture_: Picture) {}
 
@@ -43,10 +53,11 @@ export class ImageFeed {
     this.begun_ms_ = performance.now();
     const current = (): boolean => policy === this.policy_ && policy.current(request);
     try {
-      const answer = await fetch(image_url(request.job, "png", request.exposure, request.revision));
+      const answer = await fetch(image_url(request.job, "png", request.exposure, request.revision, request.layer));
       if (answer.ok) {
         const header = answer.headers.get("Raykiln-Revision");
         const revision = header === null ? request.revision : Number(header);
+        if (current()) this.on_range(range_of(answer.headers));
         await this.picture_.show(await answer.blob(), revision, request.exposure, current);
         shown = revision;
         this.failures_ = 0;

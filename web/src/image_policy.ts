@@ -2,14 +2,17 @@
 // wanted meanwhile replaces what was wanted before, so that a slow encoder or
 // network shows fewer revisions and never an older one after a newer one.
 
+import type { Layer } from "./contract";
+
 export interface Wanted {
   job: string;
   revision: number;
   exposure: number;
+  layer?: Layer;
 }
 
 const same_picture = (a: Wanted, b: Wanted): boolean =>
-  a.job === b.job && a.exposure === b.exposure;
+  a.job === b.job && a.exposure === b.exposure && (a.layer ?? "beauty") === (b.layer ?? "beauty");
 
 /** Whether `shown` is as good as `wanted`, or better. */
 const covers = (shown: Wanted | null, wanted: Wanted): boolean =>

@@ -1,7 +1,9 @@
 // The page's whole state as one plain value and the pure function that moves
 // it. The view is a function of this value; nothing else is remembered.
 
-import { is_final, type Job, type JobPage, type Scene } from "./contract";
+import {
+  is_final, type Job, type JobAccuracy, type JobPage, type Layer, type MapRange, type Scene,
+} from "./contract";
 import { kDefaultForm, type FormErrors, type FormKey, type FormValues } from "./form";
 import { explain, type FieldProblem, type Problem } from "./problem";
 import type { Route } from "./route";
@@ -46,6 +48,11 @@ export interface State {
   command_problem: string;
   exposure: number;
   zoom: "fit" | "actual";
+  layer: Layer;
+  /** What the colours on the stage stand for; null for the picture itself. */
+  range: MapRange | null;
+  /** Of the job on the page. */
+  accuracy: JobAccuracy | null;
 }
 
 export type Action =
@@ -70,7 +77,10 @@ export type Action =
   | { type: "form_invalid"; errors: FormErrors }
   | { type: "submit_failed"; problem: Problem; errors: FormErrors }
   | { type: "exposure"; value: number }
-  | { type: "zoom"; value: "fit" | "actual" };
+  | { type: "zoom"; value: "fit" | "actual" }
+  | { type: "layer"; value: Layer }
+  | { type: "range"; range: MapRange | null }
+  | { type: "accuracy"; job: string; accuracy: JobAccuracy };
 
 export function initial_state(route: Route, now_ms: number): State {
   return {
@@ -81,7 +91,7 @@ export function initial_state(route: Route, now_ms: number): State {
     uploads: [],
     form: kDefaultForm, form_errors: {}, form_problem: "", submitting: false,
     missing: "", command_problem: "",
-    exposure: 0, zoom: "fit",
+    exposure: 0, zoom: "fit", layer: "beauty", range: null, accuracy: null,
   };
 }
 
@@ -136,11 +146,15 @@ function chosen(state: State, scene: string): State {
   };
 }
 
+const on_page = (state: State, job: string): boolean =>
+  state.route.page === "job" && state.route.id === job;
+
 export function reduce(state: State, action: Action): State {
   switch (action.type) {
     case "route":
       return {
         ...state, route: action.route, missing: "", command_problem: "", exposure: 0, zoom: "fit",
+        layer: "beauty", range: null, accuracy: null,
         line: { state: "connecting", retry_at_ms: 0, reason: "" },
       };
     case "tick":
@@ -178,6 +192,12 @@ export function reduce(state: State, action: Action): State {
       return { ...state, exposure: action.value };
     case "zoom":
       return { ...state, zoom: action.value };
+    case "layer":
+      return { ...state, layer: action.value };
+    case "range":
+      return { ...state, range: action.range };
+    case "accuracy":
+      return on_page(state, action.job) ? { ...state, accuracy: action.accuracy } : state;
     default:
       return reduce_upload(state, action);
   }

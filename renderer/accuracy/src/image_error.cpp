@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kWindowRadius = 2;  ///< of the windows that means are smoothed over
 constexpr int kStripRows = 16;    ///< rows that are worked on at once
-constexpr double kTailPixel = 0.5;   ///< largest_share from which on one sample makes up a variance
+constexpr double kTailPixel = 0.45;  ///< largest_share from which on one or two samples make up a variance
 constexpr double kTailImage = 0.2;   ///< part of rel_mse in such pixels that raises the flag
 constexpr double kTailWidening = 3.0;
 constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};

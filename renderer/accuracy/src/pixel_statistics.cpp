@@ -22,6 +22,15 @@ double variance_of_replicates(const PixelSums& sums, double mean, double n) {
   return replicates < 2 ? 0.0 : squares / ((replicates - 1) * n);
 }
 
+/// Deviations below this part of the mean are rounding of equal samples, whose means are sums divided.
+constexpr double kRounding = 1e-13;
+
+/// A sum of squared deviations as the variance of the mean.
+double variance_of_mean(double moment, double mean, double n) {
+  const double rounding = kRounding * mean;
+  return moment <= n * rounding * rounding ? 0.0 : moment / (n * (n - 1.0));
+}
+
 /// Sums of windows along one row or column. Each is added up anew: a running difference would keep
 /// the rounding of what has passed.
 template <typename In, typename Out>
@@ -44,11 +53,12 @@ PixelStatistics pixel_statistics(const PixelSums& sums) {
   result.luminance = luminance({result.mean[0], result.mean[1], result.mean[2]});
   if (result.samples < 2) return result;
   result.known = true;
-  const double per_moment = 1.0 / (n * (n - 1.0));
-  for (std::size_t c = 0; c < 3; ++c) result.variance[c] = sums.moment[c] * per_moment;
-  result.luminance_variance = sums.luminance_moment * per_moment;
+  for (std::size_t c = 0; c < 3; ++c) {
+    result.variance[c] = variance_of_mean(sums.moment[c], result.mean[c], n);
+  }
+  result.luminance_variance = variance_of_mean(sums.luminance_moment, result.luminance, n);
   const double above = sums.largest - result.luminance;
-  if (sums.luminance_moment > 0.0) {
+  if (result.luminance_variance > 0.0) {
     result.largest_share = std::min(1.0, above * above / sums.luminance_moment);
   }
   result.replicate_variance = variance_of_replicates(sums, result.luminance, n);

@@ -87,18 +87,29 @@ bool consistent(const Image& image) {
                                  static_cast<std::size_t>(image.height);
 }
 
-/// Linear EXR; the library converts from float to the file's type, rounding to nearest.
-std::variant<Bytes, EncodeError> encode_linear(
-    const Image& image, OIIO::TypeDesc file_type,
-    const std::map<std::string, std::string>& attributes) {
-  if (!consistent(image)) return EncodeError{"the picture has no pixels"};
-  OIIO::ImageSpec spec = rgb_spec(image, file_type);
+/// What every EXR of this library says of itself.
+void describe(OIIO::ImageSpec& spec, const std::map<std::string, std::string>& attributes) {
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("compression", "zip");
   // Unless the caller gives a time, a fixed one: the library would write now, and equal pictures
   // would not be equal bytes.
   spec.attribute("DateTime", "1970:01:01 00:00:00");
   for (const auto& [key, value] : attributes) spec.attribute(key, value);
+}
+
+/// Where the values of one channel lie.
+struct PlaneChannel {
+  const float* first;
+  std::size_t stride;
+};
+
+/// Linear EXR; the library converts from float to the file's type, rounding to nearest.
+std::variant<Bytes, EncodeError> encode_linear(
+    const Image& image, OIIO::TypeDesc file_type,
+    const std::map<std::string, std::string>& attributes) {
+  if (!consistent(image)) return EncodeError{"the picture has no pixels"};
+  OIIO::ImageSpec spec = rgb_spec(image, file_type);
+  describe(spec, attributes);
   return encode("a.exr", spec, OIIO::TypeDesc::FLOAT, image.rgb.data());
 }
 
@@ -118,8 +129,32 @@ std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_
 }
 
 std::variant<Bytes, EncodeError> encode_exr(const Image& image,
-                                            const std::map<std::string, std::string>& attributes) {
-  return encode_linear(image, OIIO::TypeDesc::FLOAT, attributes);
+                                            const std::map<std::string, std::string>& attributes,
+                                            std::span<const ExtraPlane> planes) {
+  if (planes.empty()) return encode_linear(image, OIIO::TypeDesc::FLOAT, attributes);
+  if (!consistent(image)) return EncodeError{"the picture has no pixels"};
+  const std::size_t pixels = image.rgb.size() / 3;
+  std::vector<std::string> names{"R", "G", "B"};
+  std::vector<PlaneChannel> channels;
+  for (std::size_t c = 0; c < 3; ++c) channels.push_back({&image.rgb[c], 3});
+  for (const ExtraPlane& plane : planes) {
+    const std::size_t of_plane = plane.values.size() / pixels;
+    if (plane.values.size() != of_plane * pixels || (of_plane != 1 && of_plane != 3)) {
+      return EncodeError{"plane " + plane.name + " does not fit the picture"};
+    }
+    for (std::size_t c = 0; c < of_plane; ++c) {
+      names.push_back(of_plane == 1 ? plane.name : plane.name + "." + "RGB"[c]);
+      channels.push_back({&plane.values[c], of_plane});
+    }
+  }
+  std::vector<float> interleaved(pixels * channels.size());
+  for (std::size_t i = 0, at = 0; i < pixels; ++i) {
+    for (const PlaneChannel& channel : channels) interleaved[at++] = channel.first[i * channel.stride];
+  }
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = names;
+  describe(spec, attributes);
+  return encode("a.exr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
 }
 
 HalfRange half_range(const Image& image) {

@@ -6,6 +6,7 @@
 #include "raykiln/api/api.hpp"
 #include "raykiln/api/etag.hpp"
 #include "raykiln/image/encode.hpp"
+#include "raykiln/image/false_colour.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -19,6 +20,11 @@ struct ImageQuery {
   double exposure_stops = 0.0;
   std::string layer = "beauty";
 };
+
+/// Layers that are shown in false colour.
+bool is_map(const std::string& layer) {
+  return layer == "error" || layer == "samples" || layer == "seconds";
+}
 
 std::variant<ImageQuery, Problem> parse_image_query(const Request& request) {
   if (auto problem = check_query(request, {"format", "type", "exposure", "rev", "layer"})) return *problem;
@@ -40,7 +46,13 @@ std::variant<ImageQuery, Problem> parse_image_query(const Request& request) {
     return invalid_parameter("rev", "must be a revision number");
   }
   if (const auto* layer = find_value(request.query, "layer")) query.layer = *layer;
-  if (query.layer != "beauty") return invalid_parameter("layer", "must be beauty");
+  if (query.layer != "beauty" && !is_map(query.layer)) {
+    return invalid_parameter("layer", "must be beauty, error, samples or seconds");
+  }
+  if (query.layer != "beauty" && query.half) {
+    return invalid_parameter("type", "half is for layer=beauty: small errors would vanish");
+  }
+  if (query.layer != "beauty") query.exposure_stops = 0.0;
   return query;
 }
 
@@ -64,6 +76,7 @@ std::map<std::string, std::string> exr_attributes(const JobImage& image, const s
           {"raykiln:samples", shortest(image.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(image.request))},
           {"raykiln:seconds", shortest(image.render_seconds)},
+          {"raykiln:planes", "error: standard error of the mean, radiance, NaN where unknown; samples: per pixel; seconds: of workers, per pixel"},
           {"raykiln:version", version}};
 }
 
@@ -77,16 +90,57 @@ std::variant<render::Bytes, render::EncodeError> encode_half(const JobImage& ima
   return std::move(std::get<render::HalfExr>(encoded).bytes);
 }
 
+/// The planes of a layer's EXR. Seconds have a file of their own: they differ from run to run.
+std::vector<render::ExtraPlane> planes_of(const JobImage& image, const std::string& layer) {
+  if (layer == "seconds") return {{"seconds", image.seconds}};
+  if (image.error.empty()) return {};
+  return {{"error", image.error}, {"samples", image.samples}};
+}
+
+/// One value a pixel: of errors their luminance.
+std::vector<float> map_values(const JobImage& image, const std::string& layer) {
+  if (layer == "samples") return image.samples;
+  if (layer == "seconds") return image.seconds;
+  std::vector<float> values(image.error.size() / 3);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<float>(render::luminance(
+        {image.error[3 * i], image.error[3 * i + 1], image.error[3 * i + 2]}));
+  }
+  return values;
+}
+
+render::ValueRange map_range(const std::vector<float>& values, const std::string& layer) {
+  const bool linear = layer == "samples";
+  return render::value_range(values, linear ? render::ValueScale::kLinear : render::ValueScale::kLog);
+}
+
 Result<std::string> encode(const JobImage& image, const ImageQuery& query,
                            const std::string& version) {
-  auto encoded = query.half  ? encode_half(image, version)
-                 : query.exr ? render::encode_exr(image.image, exr_attributes(image, version))
-                             : render::encode_png(image.image, query.exposure_stops);
+  std::variant<render::Bytes, render::EncodeError> encoded;
+  if (query.half) {
+    encoded = encode_half(image, version);
+  } else if (query.exr) {
+    encoded = render::encode_exr(image.image, exr_attributes(image, version), planes_of(image, query.layer));
+  } else if (query.layer == "beauty") {
+    encoded = render::encode_png(image.image, query.exposure_stops);
+  } else {
+    const auto values = map_values(image, query.layer);
+    encoded = render::encode_png(render::false_colour(values, image.image.width, image.image.height,
+                                                      map_range(values, query.layer)), 0.0);
+  }
   if (const auto* error = std::get_if<render::EncodeError>(&encoded)) {
     return Error{ErrorKind::kInternal, "internal", error->message, {}};
   }
   const auto& bytes = std::get<render::Bytes>(encoded);
   return std::string(bytes.begin(), bytes.end());
+}
+
+/// What the colours of a map stand for.
+void tell_range(Response& response, const JobImage& image, const std::string& layer) {
+  const auto range = map_range(map_values(image, layer), layer);
+  response.headers.emplace_back("Raykiln-Low", shortest(range.low));
+  response.headers.emplace_back("Raykiln-High", shortest(range.high));
+  response.headers.emplace_back("Raykiln-Scale", std::string(name(range.scale)));
 }
 
 }  // namespace
@@ -98,15 +152,22 @@ Answer Api::get_image(const Request& request) {
   const auto& query = std::get<ImageQuery>(parsed);
 
   const auto found = await<JobImagePtr>([&](auto reply) {
-    parts_.scheduler.image(path_parameter(request, "job"), query.layer, std::move(reply));
+    const bool plain = query.layer == "beauty" && (!query.exr || query.half);
+    parts_.scheduler.image(path_parameter(request, "job"), plain ? "beauty" : "all", std::move(reply));
   });
   if (!found) return to_response(problem_of(found.error()));
   const JobImage& image = **found;
+  const std::size_t pixels = image.image.rgb.size() / 3;
+  const bool there = query.layer == "seconds" ? image.seconds.size() == pixels : image.error.size() == 3 * pixels;
+  if (query.layer != "beauty" && !there) {
+    return to_response(problem_of({ErrorKind::kNotFound, "image_not_ready", "there is no such layer of this picture", "layer", 1}));
+  }
   const std::string key = image_key(image, query);
   Response response;
   response.headers = {{"ETag", '"' + key + '"'},
                       {"Raykiln-Revision", std::to_string(image.revision)},
                       {"Cache-Control", "no-cache"}};
+  if (!query.exr && is_map(query.layer)) tell_range(response, image, query.layer);
   const auto* known = find_value(request.headers, "if-none-match");
   if (known != nullptr && etag_matches(*known, '"' + key + '"')) {
     response.status = 304;

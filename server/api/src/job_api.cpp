@@ -89,6 +89,16 @@ Answer Api::get_job(const Request& request) {
   return json_response(200, job_json(*job));
 }
 
+Answer Api::get_accuracy(const Request& request) {
+  if (auto problem = check_query(request, {})) return to_response(*problem);
+  if (auto problem = check_job_id(request)) return to_response(*problem);
+  const auto job = await<JobSnapshot>([&](auto reply) {
+    parts_.scheduler.get(path_parameter(request, "job"), std::move(reply));
+  });
+  if (!job) return to_response(problem_of(job.error()));
+  return json_response(200, accuracy_json(*job));
+}
+
 Answer Api::cancel_job(const Request& request) {
   if (auto problem = check_query(request, {})) return to_response(*problem);
   if (auto problem = check_job_id(request)) return to_response(*problem);

@@ -6,6 +6,7 @@
 #include <deque>
 #include <mutex>
 
+#include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/render/render.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
@@ -94,7 +95,7 @@ class LocalJob {
     return success();
   }
 
-  [[nodiscard]] render::Image image() const { return film_.resolve(); }
+  [[nodiscard]] const render::Film& film() const { return film_; }
   [[nodiscard]] const JobStatistics& statistics() const { return statistics_; }
   /// What ended it, its error, and the samples of its tiles where they differ.
   void tell(JobSnapshot& job) const {
@@ -240,7 +241,10 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   if (auto status = job.run(progress); !status) return status.error();
 
   LocalPicture picture;
-  picture.image = job.image();
+  picture.image = job.film().resolve();
+  const auto errors = render::pixel_errors(job.film()).standard_error;
+  for (const double e : errors) picture.error.push_back(static_cast<float>(e));
+  for (const double n : job.film().plane("samples")) picture.samples.push_back(static_cast<float>(n));
   picture.job.request = request;
   picture.job.state = JobState::kCompleted;
   picture.job.progress = job.progress();

@@ -39,7 +39,10 @@ std::variant<render::Bytes, render::EncodeError> exr(const CliOptions& options,
                                                      const std::string& scene,
                                                      const std::filesystem::path& output) {
   auto written = attributes(picture, scene);
-  if (!options.picture.half) return render::encode_exr(picture.image, written);
+  if (!options.picture.half) {
+    const std::vector<render::ExtraPlane> planes{{"error", picture.error}, {"samples", picture.samples}};
+    return render::encode_exr(picture.image, written, planes);
+  }
   const auto range = render::half_range(picture.image);
   written["raykiln:clamped_values"] = std::to_string(range.clamped);
   written["raykiln:vanished_values"] = std::to_string(range.vanished);

@@ -49,6 +49,29 @@ std::vector<CurvePoint> read_curve(const RecordReader& r) {
   return curve;
 }
 
+/// Six numbers a forecast; the last is 0 while its error is not reached.
+constexpr std::size_t kForecastNumbers = 6;
+
+void write_forecasts(RecordWriter& r, const std::vector<Forecast>& forecasts) {
+  for (const Forecast& f : forecasts) {
+    for (const double value : {f.made_at, f.error, f.seconds.value, f.seconds.low, f.seconds.high,
+                               f.actual.value_or(0.0)}) {
+      r.real("forecast", value);
+    }
+  }
+}
+
+std::vector<Forecast> read_forecasts(const RecordReader& r) {
+  const auto v = reals(r.list("forecast"));
+  std::vector<Forecast> forecasts;
+  for (std::size_t i = 0; i + kForecastNumbers <= v.size() && forecasts.size() < kMostForecasts;
+       i += kForecastNumbers) {
+    forecasts.push_back({.made_at = v[i], .error = v[i + 1], .seconds = {v[i + 2], v[i + 3], v[i + 4]}});
+    if (v[i + 5] > 0.0) forecasts.back().actual = v[i + 5];
+  }
+  return forecasts;
+}
+
 }  // namespace
 
 std::vector<std::uint64_t> naturals(const std::vector<std::string>& list) {
@@ -62,6 +85,7 @@ std::vector<std::uint64_t> naturals(const std::vector<std::string>& list) {
 void write_accuracy(RecordWriter& r, const JobSnapshot& job) {
   r.text("done_by", name(job.done_by));
   write_curve(r, job.curve);
+  write_forecasts(r, job.forecasts);
   for (const std::uint64_t samples : job.tile_samples) r.natural("tile_samples", samples);
   if (!job.accuracy) return;
   const PictureError& a = *job.accuracy;
@@ -78,6 +102,7 @@ void write_accuracy(RecordWriter& r, const JobSnapshot& job) {
 void read_accuracy(const RecordReader& r, JobSnapshot& job) {
   job.done_by = done_by_named(r.text("done_by"));
   job.curve = read_curve(r);
+  job.forecasts = read_forecasts(r);
   job.tile_samples = naturals(r.list("tile_samples"));
   if (!r.has("accuracy.grade")) return;
   PictureError& a = job.accuracy.emplace();

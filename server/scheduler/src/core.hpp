@@ -44,6 +44,7 @@ struct LiveJob {
 
   // The error of the picture.
   double measure_at = 0.0;  ///< render seconds from which it is judged anew
+  std::vector<float> pixel_seconds;  ///< of workers
 
   // On its way to a final state.
   std::optional<JobEvent> ending{};
@@ -131,9 +132,9 @@ class Scheduler::Core {
   void tell_queue_positions();
 
   // core_images.cpp
-  [[nodiscard]] JobImagePtr resolve(LiveJob& job);
+  [[nodiscard]] JobImagePtr resolve(LiveJob& job, bool layers);
   void remember(JobImagePtr image);
-  [[nodiscard]] JobImagePtr remembered(const JobId& id, std::uint64_t revision) const;
+  [[nodiscard]] JobImagePtr remembered(const JobId& id, std::uint64_t revision, bool layers) const;
   void load_image(const JobSnapshot& job, const Reply<JobImagePtr>& reply);
 
   // core_scenes.cpp

@@ -89,6 +89,12 @@ void Scheduler::Core::note_error(LiveJob& job, PictureError error) {
                         .samples = error.mean_samples,
                         .rays = s.statistics.rays(),
                         .error = error.error});
+    for (const Forecast& scored : update_forecasts(s.forecasts, s.curve, error.heavy_tailed)) {
+      parts_.metrics
+          .counter("raykiln_forecasts_total", "forecasts of the time to half an error, by whether they held",
+                   {{"hit", scored.hit() ? "true" : "false"}})
+          .add();
+    }
     s.progress.stop_fraction =
         std::max(s.progress.stop_fraction, target_fraction(s.request.stop, error));
   }

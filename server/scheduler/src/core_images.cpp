@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core.hpp"
+#include "image_layers.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -24,17 +25,20 @@ Error image_not_ready() {
 
 }  // namespace
 
-JobImagePtr Scheduler::Core::resolve(LiveJob& job) {
+JobImagePtr Scheduler::Core::resolve(LiveJob& job, bool layers) {
   const SteadyTime begin = parts_.clock.steady();
   auto image = framed(job.snapshot);
   image->image = job.picture;
+  if (layers) add_layers(*image, *job.film, job.pixel_seconds);
   job.snapshot.statistics.publish_seconds += seconds_between(begin, parts_.clock.steady());
   return image;
 }
 
-JobImagePtr Scheduler::Core::remembered(const JobId& id, std::uint64_t revision) const {
+JobImagePtr Scheduler::Core::remembered(const JobId& id, std::uint64_t revision,
+                                              bool layers) const {
   for (const JobImagePtr& image : images_) {
-    if (image->job == id && image->revision == revision) return image;
+    const bool enough = !layers || image->is_final || !image->error.empty();
+    if (image->job == id && image->revision == revision && enough) return image;
   }
   return nullptr;
 }
@@ -47,17 +51,18 @@ void Scheduler::Core::remember(JobImagePtr image) {
 
 void Scheduler::Core::image(const JobId& id, const std::string& layer,
                             const Reply<JobImagePtr>& reply) {
-  if (layer != "beauty") {
+  const bool layers = layer == "all";
+  if (layer != "beauty" && !layers) {
     return reply(Error{ErrorKind::kInvalid, "invalid_parameter", "there is no such layer", "layer"});
   }
   auto snapshot = snapshot_of(id);
   if (!snapshot) return reply(snapshot.error());
   if (snapshot->image_revision == 0) return reply(image_not_ready());
-  if (auto known = remembered(id, snapshot->image_revision)) return reply(std::move(known));
+  if (auto known = remembered(id, snapshot->image_revision, layers)) return reply(std::move(known));
   LiveJob* job = find(id);
   if (job == nullptr) return load_image(*snapshot, reply);
   if (!job->film) return reply(image_not_ready());
-  JobImagePtr fresh = resolve(*job);
+  JobImagePtr fresh = resolve(*job, layers);
   remember(fresh);
   reply(std::move(fresh));
 }
@@ -68,6 +73,9 @@ void Scheduler::Core::load_image(const JobSnapshot& job, const Reply<JobImagePtr
     if (!stored) return reply(stored.error());
     auto image = framed(job);
     image->image = render::Image{stored->width, stored->height, std::move(stored->rgb)};
+    image->error = std::move(stored->error);
+    image->samples = std::move(stored->samples);
+    image->seconds = std::move(stored->seconds);
     strand_->post([this, image] { remember(image); });
     reply(JobImagePtr(image));
   });

@@ -63,6 +63,7 @@ void Scheduler::Core::restore() {
       job.snapshot.statistics = {};
       job.snapshot.accuracy.reset();
       job.snapshot.curve.clear();
+      job.snapshot.forecasts.clear();
       job.snapshot.progress.samples_done = 0;
       job.snapshot.progress.stop_fraction = 0.0;
       job.snapshot.progress.tiles_started = job.snapshot.progress.tiles_done = 0;

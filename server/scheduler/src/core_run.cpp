@@ -4,6 +4,7 @@
 #include <new>
 
 #include "core.hpp"
+#include "image_layers.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/tile_counts.hpp"
@@ -28,6 +29,19 @@ std::vector<std::uint32_t> samples_of(const std::vector<render::SampleBlock>& bl
 
 std::uint64_t rays_in(const render::TileResult& r) {
   return r.stats.camera_rays + r.stats.bounce_rays + r.stats.shadow_rays;
+}
+
+/// A task's time, spread evenly over its pixels.
+void add_pixel_seconds(std::vector<float>& seconds, int width, const TileOutcome& outcome) {
+  std::size_t pixels = 0;
+  for (const render::TileResult& result : outcome.results) pixels += result.rect.pixels();
+  const auto each = static_cast<float>(outcome.seconds / static_cast<double>(std::max<std::size_t>(pixels, 1)));
+  for (const render::TileResult& result : outcome.results) {
+    for (int y = result.rect.y0; y < result.rect.y1; ++y) {
+      const auto row = seconds.begin() + std::ptrdiff_t{y} * width;
+      std::for_each(row + result.rect.x0, row + result.rect.x1, [each](float& s) { s += each; });
+    }
+  }
 }
 
 }  // namespace
@@ -118,6 +132,7 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   job.picture = {s.request.width, s.request.height,
                  std::vector<float>(3 * static_cast<std::size_t>(s.request.width) *
                                     static_cast<std::size_t>(s.request.height))};
+  job.pixel_seconds.assign(static_cast<std::size_t>(s.request.width) * static_cast<std::size_t>(s.request.height), 0.0F);
   job.plan.emplace(s.request.width, s.request.height, s.request.tile, samples_of(job.blocks),
                    task_length(config_.scheduler));
   job.render_since = parts_.clock.steady();
@@ -191,6 +206,7 @@ void Scheduler::Core::merge_outcome(LiveJob& job, const TileOutcome& outcome) {
   JobStatistics& statistics = job.snapshot.statistics;
   const SteadyTime begin = parts_.clock.steady();
   shares_.charge(job.snapshot.id, outcome.seconds - job.plan->expected_seconds(outcome.item));
+  add_pixel_seconds(job.pixel_seconds, job.settings.width, outcome);
   for (const render::TileResult& result : outcome.results) {
     render::merge(*job.film, result);
     job.film->resolve(result.rect, job.picture);
@@ -249,16 +265,20 @@ void Scheduler::Core::archive_if_drained(LiveJob& job) {
   job.archiving = true;
   const JobId id = job.snapshot.id;
   if (job.snapshot.progress.samples_done == 0) return archived(id, success(), nullptr, std::nullopt);
-  JobImagePtr image = resolve(job);
+  const JobImagePtr beauty = resolve(job, false);
   // Nothing is merged any more: the film is read, and its error judged, where it holds up nobody.
-  disk_.post([this, id, image, film = std::shared_ptr<const render::Film>(job.film),
+  disk_.post([this, id, beauty, film = std::shared_ptr<const render::Film>(job.film),
+              seconds = std::move(job.pixel_seconds),
               samples_area = job.snapshot.request.pixel_mode == PixelMode::kRandom] {
     Status saved = success();
     std::optional<PictureError> error;
+    auto image = std::make_shared<JobImage>(*beauty);
     try {
       error = judge_picture(*film, samples_area);
+      add_layers(*image, *film, seconds);
       const auto& picture = image->image;
-      saved = parts_.store.put_image(id, {picture.width, picture.height, picture.rgb});
+      saved = parts_.store.put_image(id, {picture.width, picture.height, picture.rgb, image->error,
+                                          image->samples, image->seconds});
     } catch (const std::exception& fault) {
       saved = Error{ErrorKind::kInternal, "internal", fault.what(), ""};
     }

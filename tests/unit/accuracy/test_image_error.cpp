@@ -54,7 +54,7 @@ TEST(ImageError, AnUnsampledTileMakesTheWholeUnknown) {
 }
 
 TEST(ImageError, APictureWithoutNoiseHasErrorZeroAndSaysThatNothingVaried) {
-  const Film film = synthetic_film(8, 8, 64, 1, [](int x, int, auto&) { return Rgbd(1.0 + x); });
+  const Film film = synthetic_film(8, 8, 64, 1, [](int x, int, auto&) { return Rgbd(0.1 + x / 3.0); });
   const ImageError error = image_error(film);
   EXPECT_EQ(error.grade, ErrorGrade::kMeasured);
   EXPECT_EQ(error.error.high, 0.0);

@@ -67,6 +67,8 @@ TEST(PictureError, SurvivesItsRecord) {
   job.done_by = DoneBy::kSeconds;
   job.tile_samples = {1, 2, 0};
   job.curve = {{.render_seconds = 1.5, .worker_seconds = 3, .samples = 64, .rays = 12345, .error = {0.1, 0.05, 0.2}}};
+  job.forecasts = {{.made_at = 1, .error = 0.1, .seconds = {4, 3, 5}}, {.made_at = 2, .error = 0.05, .seconds = {8, 6, 10}}};
+  job.forecasts[0].actual = 4.5;
   const auto read = decode_job(encode_job(job));
   ASSERT_TRUE(read && read->accuracy);
   EXPECT_EQ(read->request.stop.seconds, 2.5);
@@ -77,6 +79,10 @@ TEST(PictureError, SurvivesItsRecord) {
   EXPECT_TRUE(read->accuracy->heavy_tailed);
   EXPECT_EQ(read->done_by, DoneBy::kSeconds);
   EXPECT_EQ(read->tile_samples, job.tile_samples);
+  ASSERT_EQ(read->forecasts.size(), 2U);
+  EXPECT_TRUE(read->forecasts[0].hit());
+  EXPECT_FALSE(read->forecasts[1].actual);
+  EXPECT_EQ(read->forecasts[1].seconds.high, 10.0);
   ASSERT_EQ(read->curve.size(), 1U);
   EXPECT_EQ(read->curve[0].rays, 12345U);
   EXPECT_EQ(read->curve[0].error.low, 0.05);

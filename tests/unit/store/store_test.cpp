@@ -178,11 +178,17 @@ TEST_F(StoreTest, ImagesReadBackAndDamageIsNoticed) {
   ASSERT_TRUE(store->put_job(job("a", JobState::kCompleted)));
   EXPECT_EQ(store->image("a").error().code, "image_not_ready");
   EXPECT_EQ(store->image("../raykiln.db").error().code, "image_not_ready");
-  const StoredImage image{2, 1, {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 1e30F}};
+  ASSERT_TRUE(store->put_image("a", {1, 1, {1.0F, 2.0F, 3.0F}})) << "without layers";
+  EXPECT_TRUE(store->image("a")->error.empty());
+  EXPECT_FALSE(store->put_image("a", {1, 1, {1, 2, 3}, {1, 2}, {1}, {1}})) << "layers that do not fit";
+  const StoredImage image{2, 1, {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 1e30F}, {0, 1, 2, 3, 4, 5}, {7, 8}, {0.5F, 0.25F}};
   ASSERT_TRUE(store->put_image("a", image));
   ASSERT_TRUE(store->put_image("a", image)) << "replaced";
   open();
   EXPECT_EQ(store->image("a")->rgb, image.rgb);
+  EXPECT_EQ(store->image("a")->error, image.error);
+  EXPECT_EQ(store->image("a")->samples, image.samples);
+  EXPECT_EQ(store->image("a")->seconds, image.seconds);
   EXPECT_EQ(store->bytes_used(), fs::file_size(directory.path() / "images" / "a"));
   {
     std::fstream file(directory.path() / "images" / "a", std::ios::in | std::ios::out | std::ios::binary);

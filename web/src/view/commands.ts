@@ -1,5 +1,6 @@
 // What a person can ask for. The views call these; main carries them out.
 
+import type { Layer } from "../contract";
 import type { FormKey } from "../form";
 import type { SceneFile } from "../upload_list";
 
@@ -14,6 +15,7 @@ export interface Commands {
   cancel(id: string): void;
   render_again(id: string): void;
   set_exposure(stops: number): void;
+  set_layer(layer: Layer): void;
   set_zoom(zoom: "fit" | "actual"): void;
   retry_now(): void;
 }

@@ -1,15 +1,20 @@
 // One job: its picture, its figures, and what can be done with it.
 
 import { image_url } from "../api";
-import { is_final, job_title, type Job } from "../contract";
+import { is_final, job_title, kLayers, type Job, type Layer } from "../contract";
 import { count, duration, error_percent, label_of, percent, ray_rate, si, statistic, stops } from "../format";
 import { remedy_of } from "../problem";
 import { since_heard, type State } from "../state";
 import type { Commands } from "./commands";
+import { CurveView } from "./curve";
 import { Facts, h, set_attribute, set_hidden, set_text } from "./dom";
 import { report } from "./job_form";
 import { Picture } from "./picture";
 import { WarningList } from "./warnings";
+
+const kLayerNames: Record<Layer, string> = {
+  beauty: "Picture", error: "Standard error", samples: "Samples", seconds: "Seconds",
+};
 
 export const kExposureRange = { min: -8, max: 8, step: 0.1 };
 
@@ -36,6 +41,11 @@ export class JobPage {
   private reset_ = h("button", { type: "button", class: "quiet" }, "Reset");
   private fit_ = h("button", { type: "button", "aria-pressed": "true" }, "Fit");
   private actual_ = h("button", { type: "button", "aria-pressed": "false" }, "100 %");
+  private layer_ = h("select", { id: "layer" },
+    ...kLayers.map((layer) => h("option", { value: layer }, kLayerNames[layer])));
+  private legend_text_ = h("span", { class: "hint" });
+  private legend_ = h("div", { class: "legend", hidden: true }, h("span", { class: "legend-bar" }), this.legend_text_);
+  private curve_ = new CurveView();
   private scale_ = h("span", { class: "hint scale" });
   private statistics_ = new Facts();
   private settings_ = new Facts();
@@ -51,6 +61,7 @@ export class JobPage {
     this.again_.addEventListener("click", () => commands.render_again(this.id_));
     this.exposure_.addEventListener("input", () => commands.set_exposure(this.exposure_.valueAsNumber));
     this.reset_.addEventListener("click", () => commands.set_exposure(0));
+    this.layer_.addEventListener("change", () => commands.set_layer(this.layer_.value as Layer));
     this.fit_.addEventListener("click", () => commands.set_zoom("fit"));
     this.actual_.addEventListener("click", () => commands.set_zoom("actual"));
     this.picture.on_scale = (scale) => set_text(this.scale_, percent_scale(scale));
@@ -64,6 +75,7 @@ export class JobPage {
       h("div", { class: "toolbar" },
         h("div", { class: "exposure" },
           h("label", { for: "exposure" }, "Exposure"), this.exposure_, this.exposure_value_, this.reset_),
+        h("div", { class: "layer" }, h("label", { for: "layer" }, "Show"), this.layer_, this.legend_),
         h("div", { class: "row", role: "group", "aria-label": "Zoom" },
           this.fit_, this.actual_, this.scale_)));
   }
@@ -77,6 +89,7 @@ export class JobPage {
       this.failure_, this.figures_.element,
       h("div", { class: "row actions" }, this.cancel_, this.again_),
       this.command_problem_, this.downloads_, this.warnings_.element,
+      this.curve_.element,
       fold("Statistics", this.statistics_, true),
       fold("Settings", this.settings_, false),
       fold("Scene", this.scene_, false));
@@ -101,6 +114,11 @@ export class JobPage {
     this.exposure_.value = String(state.exposure);
     set_text(this.exposure_value_, stops(state.exposure));
     this.reset_.disabled = state.exposure === 0;
+    if (this.layer_.value !== state.layer) this.layer_.value = state.layer;
+    const range = state.layer === "beauty" ? null : state.range;
+    set_hidden(this.legend_, range === null);
+    if (range) set_text(this.legend_text_, `${range_number(range.low)} to ${range_number(range.high)}${kUnits[state.layer]}${range.scale === "log" ? ", logarithmic" : ""}`);
+    this.curve_.update(state.accuracy);
     set_attribute(this.fit_, "aria-pressed", String(state.zoom === "fit"));
     set_attribute(this.actual_, "aria-pressed", String(state.zoom === "actual"));
     this.picture.set_zoom(state.zoom);
@@ -171,6 +189,9 @@ export class JobPage {
     set_attribute(this.exr_, "download", `${name}.exr`);
   }
 }
+
+const kUnits: Record<Layer, string> = { beauty: "", error: " radiance", samples: " samples", seconds: " s" };
+const range_number = (value: number): string => String(Number(value.toPrecision(2)));
 
 const percent_scale = (scale: number): string => `${Math.round(scale * 100)} %`;
 

@@ -34,7 +34,7 @@ struct ImageError {
   Figure rmse;          ///< root of the mean of (x - r)^2; radiance
   Figure display_rmse;  ///< the same of display values in [0, 1] at the exposure that was given
 
-  /// More than a fifth of rel_mse comes from pixels whose variance is that of one single sample: the
+  /// More than a fifth of rel_mse comes from pixels whose variance is that of one or two samples: the
   /// figures are optimistic. Intervals are three times as wide then (in the logarithm).
   bool heavy_tailed = false;
   double tail_share = 0.0;  ///< that part of rel_mse

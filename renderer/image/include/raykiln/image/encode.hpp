@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -21,9 +22,16 @@ struct EncodeError {
 [[nodiscard]] std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops,
                                                           const std::string& note = {});
 
+/// Further channels of an EXR, beside R, G and B.
+struct ExtraPlane {
+  std::string name;              ///< channel name; with three channels name.R, name.G, name.B
+  std::span<const float> values; ///< 1 or 3 a pixel
+};
+
 /// Linear float32 EXR with the given string attributes.
 [[nodiscard]] std::variant<Bytes, EncodeError> encode_exr(
-    const Image& image, const std::map<std::string, std::string>& attributes);
+    const Image& image, const std::map<std::string, std::string>& attributes,
+    std::span<const ExtraPlane> planes = {});
 
 /// What half floats do to a picture.
 struct HalfRange {

@@ -37,6 +37,7 @@ class Api {
   [[nodiscard]] Answer create_job(const Request& request);
   [[nodiscard]] Answer list_jobs(const Request& request);
   [[nodiscard]] Answer get_job(const Request& request);
+  [[nodiscard]] Answer get_accuracy(const Request& request);
   [[nodiscard]] Answer cancel_job(const Request& request);
   [[nodiscard]] Answer watch_job(const Request& request);
   [[nodiscard]] Answer get_image(const Request& request);

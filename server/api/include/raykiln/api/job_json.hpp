@@ -24,6 +24,8 @@ namespace raykiln::server {
 
 /// Schema Job, on one line.
 [[nodiscard]] std::string job_json(const JobSnapshot& job);
+/// Schema JobAccuracy, on one line.
+[[nodiscard]] std::string accuracy_json(const JobSnapshot& job);
 [[nodiscard]] std::string job_page_json(const std::vector<JobSnapshot>& jobs,
                                         const std::string& next_cursor);
 

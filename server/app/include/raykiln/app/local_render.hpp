@@ -15,6 +15,7 @@ namespace raykiln::server {
 struct LocalPicture {
   render::Image image;
   render::EffectPlan effects;  ///< what was simulated, and why
+  std::vector<float> error, samples;  ///< standard errors (3 a pixel), samples (1 a pixel)
   JobSnapshot job;  ///< completed, with statistics and warnings; its id is empty
 };
 

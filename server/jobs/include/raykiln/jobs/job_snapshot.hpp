@@ -10,6 +10,7 @@
 
 #include "raykiln/base/clock.hpp"
 #include "raykiln/base/result.hpp"
+#include "raykiln/jobs/forecast.hpp"
 #include "raykiln/jobs/job_request.hpp"
 #include "raykiln/jobs/job_state.hpp"
 #include "raykiln/jobs/picture_error.hpp"
@@ -109,6 +110,7 @@ struct JobSnapshot {
   std::optional<PictureError> accuracy{};      ///< as last judged; nothing before
   DoneBy done_by = DoneBy::kNone;              ///< what ended it; completed jobs
   std::vector<CurvePoint> curve;               ///< error against time; at most kMostCurvePoints
+  std::vector<Forecast> forecasts;             ///< of the time to half the error; at most kMostForecasts
   std::vector<std::uint64_t> tile_samples;     ///< where tiles differ in the end; else empty
   std::vector<JobWarning> warnings;            ///< of the scene, and of this job
   std::optional<Error> error{};                 ///< when failed

@@ -61,7 +61,8 @@ class Scheduler {
   /// See EventHub: `wake` must only post; take() of the subscription gives the newest snapshot, the
   /// first call the present one.
   void watch(JobId id, std::function<void()> wake, Reply<std::unique_ptr<Subscription>> reply);
-  /// The newest picture, resolved once per revision. `layer`: "beauty".
+  /// The newest picture, resolved once per revision. `layer`: "beauty" for the picture alone, "all" with its
+  /// layers (which a picture stored by an older version lacks).
   void image(JobId id, std::string layer, Reply<JobImagePtr> reply);
   /// What the job is rendered with. While its scene is not in memory: "scene_not_ready"
   /// (kUnavailable), and preparing it has begun; "scene_not_found" when it was deleted.

@@ -61,8 +61,10 @@ struct JobImage {
   JobId job;
   std::uint64_t revision = 0;  ///< the job's revision at which this picture came to be
   bool is_final = false;       ///< the job has ended: it will not change any more
-  std::string layer = "beauty";
   render::Image image;         ///< linear RGB
+  /// Standard errors (3 a pixel; NaN: unknown), samples and worker seconds (1 a pixel each). Empty where only
+  /// the picture was asked for, or was stored.
+  std::vector<float> error, samples, seconds;
   std::string scene;           ///< scene id
   JobRequest request;
   double samples_per_pixel = 0.0;

@@ -71,6 +71,8 @@ class SceneUpload {
 struct StoredImage {
   int width = 0, height = 0;
   std::vector<float> rgb;
+  /// Standard errors (3 a pixel), samples and worker seconds (1 a pixel each); none or all of them.
+  std::vector<float> error{}, samples{}, seconds{};
 };
 
 struct JobRecord {

@@ -1,0 +1,71 @@
+// What GET /v1/jobs/{job}/accuracy answers.
+#include <nlohmann/json.hpp>
+
+#include "raykiln/api/job_json.hpp"
+
+namespace raykiln::server {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json range_value(const TimeRange& range) {
+  return {{"value", range.value}, {"low", range.low}, {"high", range.high}};
+}
+
+Json figure_value(const ErrorFigure& f) { return {{"value", f.value}, {"low", f.low}, {"high", f.high}}; }
+
+/// Render seconds from now on; nothing of it is negative.
+Json left_value(const std::optional<TimeRange>& range, double now) {
+  if (!range) return nullptr;
+  const auto left = [now](double seconds) { return std::max(0.0, seconds - now); };
+  return range_value({left(range->value), left(range->low), left(range->high)});
+}
+
+Json points_value(const std::vector<CurvePoint>& curve) {
+  Json points = Json::array();
+  for (const CurvePoint& p : curve) {
+    points.push_back({{"render_seconds", p.render_seconds},
+                      {"worker_seconds", p.worker_seconds},
+                      {"samples", p.samples},
+                      {"rays", p.rays},
+                      {"error", figure_value(p.error)}});
+  }
+  return points;
+}
+
+Json forecasts_value(const std::vector<Forecast>& list) {
+  Json forecasts = Json::array();
+  for (const Forecast& f : list) {
+    forecasts.push_back({{"made_at_seconds", f.made_at},
+                         {"error", f.error},
+                         {"seconds", range_value(f.seconds)},
+                         {"actual_seconds", f.actual ? Json(*f.actual) : Json(nullptr)},
+                         {"hit", f.actual ? Json(f.hit()) : Json(nullptr)}});
+  }
+  return forecasts;
+}
+
+}  // namespace
+
+std::string accuracy_json(const JobSnapshot& job) {
+  const bool tails = job.accuracy && job.accuracy->heavy_tailed;
+  const double now = job.statistics.render_seconds;
+  const double error = job.curve.empty() ? 0.0 : job.curve.back().error.value;
+  const auto& target = job.request.stop.error;
+  const auto fit = fit_slope(job.curve);
+  Json slope = nullptr;
+  if (fit) slope = {{"value", fit->slope}, {"standard_error", fit->standard_error}, {"points", fit->points}};
+  Json value{{"job", job.id},
+             {"revision", job.revision},
+             {"points", points_value(job.curve)},
+             {"slope", std::move(slope)},
+             {"seconds_to_halve_error", left_value(seconds_to_error(job.curve, error / 2.0, tails), now)},
+             {"target", target ? Json(*target) : Json(nullptr)},
+             {"seconds_to_target",
+              target ? left_value(seconds_to_error(job.curve, *target, tails), now) : Json(nullptr)},
+             {"forecasts", forecasts_value(job.forecasts)},
+             {"tile_samples", job.tile_samples.empty() ? Json(nullptr) : Json(job.tile_samples)}};
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace raykiln::server
