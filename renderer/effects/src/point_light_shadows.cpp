@@ -5,7 +5,7 @@ namespace raykiln::render {
 namespace {
 
 Judgement judge(const EffectView& view) {
-  const std::uint64_t lights = shining_point_lights(view);
+  const std::uint64_t lights = view.use.shining_point_lights;
   if (lights == 0) return {false, "no point light has power above 0"};
   if (reflecting_material(view) == nullptr) return {false, "no surface reflects"};
   return {true, std::to_string(view.use.triangles) + " triangles may stand before point lights"};

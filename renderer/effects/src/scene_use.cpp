@@ -1,5 +1,6 @@
 #include "raykiln/effects/scene_use.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sources.hpp"
@@ -36,6 +37,9 @@ SceneUse use_of(const Scene& scene) {
   const TriangleMesh& mesh = scene.mesh;
   SceneUse use;
   use.triangles = mesh.triangles.size();
+  use.shining_point_lights = static_cast<std::uint64_t>(
+      std::count_if(scene.point_lights.begin(), scene.point_lights.end(),
+                    [](const PointLight& l) { return !is_black(l.intensity); }));
   std::vector<bool> used(scene.materials.size(), false);
   for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id) {
     const std::uint32_t material = mesh.material_ids[id];

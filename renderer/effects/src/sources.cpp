@@ -34,12 +34,6 @@ std::string named(const Material& material) {
 
 bool is_black(const Rgb& c) { return !(c.x > 0.0F || c.y > 0.0F || c.z > 0.0F); }
 
-std::uint64_t shining_point_lights(const EffectView& view) {
-  const auto& lights = view.scene.point_lights;
-  return static_cast<std::uint64_t>(std::count_if(
-      lights.begin(), lights.end(), [](const PointLight& l) { return !is_black(l.intensity); }));
-}
-
 const Material* emitting_material(const EffectView& view) {
   return find_material(view, [](const Material& m) { return !is_black(m.emission); });
 }
@@ -50,12 +44,12 @@ const Material* reflecting_material(const EffectView& view) {
 
 bool has_light(const EffectView& view) {
   return !is_black(view.scene.background) || emitting_material(view) != nullptr ||
-         shining_point_lights(view) > 0;
+         view.use.shining_point_lights > 0;
 }
 
 bool reaches_two_surfaces(const EffectView& view) {
   if (reflecting_material(view) == nullptr) return false;
-  if (view.job.max_depth >= 1 && shining_point_lights(view) > 0) return true;
+  if (view.job.max_depth >= 1 && view.use.shining_point_lights > 0) return true;
   return view.job.max_depth >= 2 &&
          (!is_black(view.scene.background) || emitting_material(view) != nullptr);
 }

@@ -23,7 +23,6 @@ const Material* find_material(const EffectView& view, Predicate&& holds) {
   return nullptr;
 }
 
-[[nodiscard]] std::uint64_t shining_point_lights(const EffectView& view);
 [[nodiscard]] const Material* emitting_material(const EffectView& view);
 [[nodiscard]] const Material* reflecting_material(const EffectView& view);
 

@@ -1,4 +1,4 @@
-// Which parts of a scene can matter: found by one walk over its triangles.
+// Which parts of a scene can matter: found by one walk over its triangles and point lights.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,13 @@ namespace raykiln::render {
 struct SceneUse {
   std::uint64_t triangles = 0;
   std::vector<std::uint32_t> materials;  ///< ids that a triangle has, ascending
+  std::uint64_t shining_point_lights = 0;  ///< those with power above 0
   /// First triangle that reflects and whose normal, interpolated, may differ from that of its
   /// plane.
   std::optional<std::uint32_t> smooth_triangle{};
 };
 
-/// O(triangles + materials).
+/// O(triangles + materials + point lights). Once a scene: a plan is made for every tile.
 [[nodiscard]] SceneUse use_of(const Scene& scene);
 
 }  // namespace raykiln::render
