@@ -61,6 +61,7 @@ PACKAGES = {
     r"boost/asio": ["server/base", "server/http", "server/app"],
     r"archive(_entry)?\.h": ["server/store", "server/workers", "server/api", "renderer/io"],
     r"CLI/": ["server/app"],
+    r"yaml-cpp/": ["server/app"],
     r"openssl/": ["server/base", "renderer/scene", "renderer/render"],
 }
 THREADS_MAY_START_IN = ["server/app", "server/workers", "server/base"]

@@ -170,6 +170,22 @@ void add_compare(CLI::App& app, CompareOptions& options) {
   add_comparison(*compare, options.settings);
 }
 
+void add_batch(CLI::App& app, CliOptions& options) {
+  BatchOptions& wanted = options.batch;
+  auto* batch = app.add_subcommand("batch", "render and judge all pictures of a file");
+  batch->add_option("FILE", wanted.file, "YAML or JSON; see proto/batch.schema.json")->required();
+  batch->add_flag("--local", wanted.local, "in this process, without a server")->required();
+  batch->add_option("--threads", options.threads, "with --local; 0: one a processor")->check(CLI::Range(0, 1024));
+  batch->add_option("--junit", wanted.junit, "JUnit XML to write");
+  batch->add_option("--report", wanted.json, "JSON to write; see proto/batch-report.schema.json");
+  batch->add_option("--html", wanted.html, "folder for a report to look at, its pictures and results.json");
+
+  auto* approve = app.add_subcommand("approve", "make pictures of a report the references of the next batch");
+  approve->add_option("REPORT", options.approve.report, "folder that batch --html wrote")->required();
+  auto* names = approve->add_option("PICTURE", options.approve.pictures, "names");
+  approve->add_flag("--all", options.approve.all, "all that differ or have no reference yet")->excludes(names);
+}
+
 void add_commands(CLI::App& app, CliOptions& options) {
   auto* render = app.add_subcommand("render", "render a scene here, without a server");
   add_picture_options(*render, options);
@@ -193,6 +209,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   replay->add_option("SAMPLE", options.replay.sample, "index of the sample, from 0")->required();
 
   add_compare(app, options.compare);
+  add_batch(app, options);
   auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
   add_picture_options(*submit, options);
   add_output(*submit, options, false);
@@ -257,6 +274,8 @@ ExitCode run_cli(const CliOptions& options) {
   if (options.command == "effects") return effects_command(options);
   if (options.command == "replay") return replay_command(options);
   if (options.command == "compare") return compare_command(options);
+  if (options.command == "batch") return batch_command(options);
+  if (options.command == "approve") return approve_command(options);
   if (options.command == "selftest") return selftest_command(options);
   if (options.command == "submit") return submit_command(options);
   if (options.command == "watch") return watch_command(options);

@@ -115,6 +115,15 @@ std::string accuracy_line(const JobSnapshot& job) {
 
 }  // namespace
 
+Result<std::vector<std::uint8_t>> local_exr(const LocalPicture& picture, const std::string& scene) {
+  const std::vector<render::ExtraPlane> planes{{"error", picture.error}, {"samples", picture.samples}};
+  auto encoded = render::encode_exr(picture.image, attributes(picture, scene), planes);
+  if (const auto* failure = std::get_if<render::EncodeError>(&encoded)) {
+    return Error{ErrorKind::kInternal, "internal", failure->message, ""};
+  }
+  return std::get<render::Bytes>(std::move(encoded));
+}
+
 ExitCode render_command(const CliOptions& options) {
   render::set_image_library_threads(1);
   const auto package = find_scene_files(options.scene);

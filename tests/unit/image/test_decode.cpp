@@ -68,6 +68,17 @@ TEST(Decode, ErrorAndSamplesAreFoundByName) {
   EXPECT_EQ(image.attributes.at("raykiln:seed"), "7");
 }
 
+TEST(Decode, NoiseSurvivesTheFile) {
+  const std::vector<float> error = gradient().rgb, samples(15, 64.0F);
+  const std::vector<ExtraPlane> planes{{"error", error}, {"samples", samples}};
+  const auto encoded = encode_exr(gradient(), {{"raykiln:seed", "3"}}, planes);
+  ASSERT_TRUE(std::holds_alternative<Bytes>(encoded));
+  const DecodedImage image = decoded(std::get<Bytes>(encoded));
+  EXPECT_EQ(image.image.rgb, gradient().rgb);
+  EXPECT_EQ(image.error, error);
+  EXPECT_EQ(image.samples, samples);
+}
+
 TEST(Decode, LayersAndGrey) {
   EXPECT_EQ(decoded(exr_with({"beauty.R", "beauty.G", "beauty.B", "depth.Z"})).image.rgb,
             (std::vector<float>{0, 1, 2, 10, 11, 12}));

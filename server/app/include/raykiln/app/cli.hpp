@@ -36,6 +36,21 @@ struct CompareOptions {
   ComparisonSettings settings;
 };
 
+/// What `batch` runs and writes.
+struct BatchOptions {
+  std::filesystem::path file;
+  std::filesystem::path junit, json;  ///< files to write; empty: none
+  std::filesystem::path html;         ///< folder of the report; empty: none
+  bool local = false;                 ///< in this process
+};
+
+/// What `approve` makes references of.
+struct ApproveOptions {
+  std::filesystem::path report;       ///< folder that `batch --html` wrote
+  std::vector<std::string> pictures;  ///< by name
+  bool all = false;                   ///< every picture that differs or has no reference yet
+};
+
 struct CliOptions {
   std::string command;
   std::string server = "http://127.0.0.1:8080";
@@ -46,6 +61,8 @@ struct CliOptions {
   PictureOptions picture;
   ReplayPlace replay;
   CompareOptions compare;
+  BatchOptions batch;
+  ApproveOptions approve;
   int threads = 0;
   bool wait = false;
   std::string job;
@@ -79,6 +96,12 @@ struct ParsedCli {
 
 /// Judges a render by its reference. kImageDiffers when the noise of both does not explain the difference.
 [[nodiscard]] ExitCode compare_command(const CliOptions& options);
+
+/// Renders and judges all pictures of a batch file, and writes the reports.
+[[nodiscard]] ExitCode batch_command(const CliOptions& options);
+
+/// Makes pictures of a report the references of the next batch.
+[[nodiscard]] ExitCode approve_command(const CliOptions& options);
 
 [[nodiscard]] ExitCode submit_command(const CliOptions& options);
 [[nodiscard]] ExitCode watch_command(const CliOptions& options);

@@ -17,7 +17,8 @@ enum class ExitCode : int {
   kNotFound = 8,        ///< no such job, scene or picture
   kBusy = 9,            ///< the server cannot take more now: try later
   kCheckFailed = 10,    ///< selftest: a check failed; lint: the scene has errors
-  kImageDiffers = 11,   ///< compare: the render is not its reference
+  kImageDiffers = 11,   ///< compare, batch: a render is not its reference
+  kLimitReached = 12,   ///< batch: a limit was reached before the error target
 };
 
 [[nodiscard]] inline int to_int(ExitCode code) { return static_cast<int>(code); }
@@ -28,14 +29,15 @@ enum class ExitCode : int {
          "  1  failure of this machine (file cannot be written, out of memory, internal fault)\n"
          "  2  wrong command line\n"
          "  3  the scene, or a picture to compare, is wrong or cannot be read\n"
-         "  4  the job failed\n"
-         "  5  the job was cancelled\n"
+         "  4  the job failed; batch: a picture did\n"
+         "  5  the job was cancelled; batch: a picture was, or was skipped\n"
          "  6  the server cannot be reached\n"
          "  7  the server refused the request\n"
          "  8  no such job, scene or picture\n"
          "  9  the server is busy or stopping; try again later\n"
          "  10 selftest: a check failed; lint: the scene has errors\n"
-         "  11 compare: the render differs from its reference\n";
+         "  11 compare, batch: a render differs from its reference\n"
+         "  12 batch: a limit was reached before the error target\n";
 }
 
 }  // namespace raykiln::server

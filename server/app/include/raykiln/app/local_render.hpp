@@ -1,7 +1,9 @@
 // A whole job in this process: import, tree, tiles on the pool, film.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "raykiln/app/progress.hpp"
 #include "raykiln/app/scene_package.hpp"
@@ -25,5 +27,8 @@ struct LocalPicture {
     const ScenePackage& package, const JobRequest& request, const render::EffectChoice& effects,
     LocalPool& pool,
     const std::filesystem::path& scratch, const std::function<void(const ProgressState&)>& progress);
+
+/// The picture and its noise as EXR, with what made it as attributes. Errors: "internal".
+[[nodiscard]] Result<std::vector<std::uint8_t>> local_exr(const LocalPicture& picture, const std::string& scene);
 
 }  // namespace raykiln::server
