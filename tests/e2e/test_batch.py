@@ -182,7 +182,7 @@ def test_compare_tells_noise_from_change(tmp_path):
     alike = raykiln("compare", a, b, "--json")
     assert alike.returncode == 0, alike.stdout
     verdict = json.loads(alike.stdout)
-    assert verdict["noise_considered"] and verdict["noise"]["chi2"] == pytest.approx(1.0, abs=0.3)
+    assert verdict["noise_considered"] and 0.2 < verdict["noise"]["chi2"] < 1.3
     found = raykiln("compare", changed, b, "--difference", tmp_path / "d.png", "--z-map", tmp_path / "z.png")
     assert found.returncode == 11 and "darker" in found.stdout, found.stdout
     assert (tmp_path / "d.png").stat().st_size > 100 and (tmp_path / "z.png").stat().st_size > 100

@@ -35,9 +35,10 @@ BlockSum& BlockSum::operator+=(const BlockSum& other) {
   return *this;
 }
 
-double BlockSum::z() const {
+double BlockSum::z(bool by_differences) const {
   const double over = std::max(0.0, std::abs(sum) - slack);
-  return over > 0.0 && scale > 0.0 ? std::copysign(over / std::sqrt(scale), sum) : 0.0;
+  const double below = by_differences ? std::min(scale, squares) : scale;
+  return over > 0.0 && below > 0.0 ? std::copysign(over / std::sqrt(below), sum) : 0.0;
 }
 
 CellGrid pixel_cells(const ChannelDifference& d, const std::vector<double>& tolerated) {

@@ -16,8 +16,9 @@ struct BlockSum {
   double slack = 0.0;    ///< of weight * tolerated change
 
   BlockSum& operator+=(const BlockSum& other);
-  /// Self-normalised sum, what is tolerated taken off; 0 where nothing differs.
-  [[nodiscard]] double z() const;
+  /// Self-normalised sum, what is tolerated taken off; 0 where nothing differs. `by_differences`: divided
+  /// by the differences themselves where they are smaller than the estimated noise.
+  [[nodiscard]] double z(bool by_differences = false) const;
 };
 
 /// Cells of one level in rows; the last column and row may be cut by the picture's border.

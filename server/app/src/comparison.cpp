@@ -50,7 +50,9 @@ std::string noise_reason(const render::NoiseVerdict& verdict) {
     return "pixels that are not finite: " + std::to_string(verdict.render_not_finite) + " against " +
            std::to_string(verdict.reference_not_finite) + " in the reference";
   }
-  const render::Evidence& best = verdict.strongest;
+  // A place says more than that there is structure.
+  const bool placed = verdict.strongest.kind == Kind::kStructure && !verdict.regions.empty();
+  const render::Evidence& best = placed ? verdict.regions.front() : verdict.strongest;
   const std::string clear = " (z " + short_number(best.z) + ")";
   switch (best.kind) {
     case Kind::kStructure: return "neighbouring pixels differ together" + clear;

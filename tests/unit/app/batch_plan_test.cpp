@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 namespace raykiln::server {
 namespace {
 
@@ -84,14 +86,14 @@ TEST(BatchPlan, WhatIsWrongIsNamedWithItsLine) {
 }
 
 TEST(Yaml, AliasesCannotGrowWithoutBound) {
-  std::string text = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  std::ostringstream text;
+  text << "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 9; ++i) {
-    const std::string one = "*a" + std::to_string(i - 1);
-    text += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + one;
-    for (int k = 0; k < 9; ++k) text += ", " + one;
-    text += "]\n";
+    text << 'a' << i << ": &a" << i << " [*a" << i - 1;
+    for (int k = 0; k < 9; ++k) text << ", *a" << i - 1;
+    text << "]\n";
   }
-  EXPECT_FALSE(parse_yaml(text));
+  EXPECT_FALSE(parse_yaml(text.str()));
 }
 
 TEST(Yaml, ScalarsAreThoseOfJson) {

@@ -8,7 +8,7 @@ namespace {
 BatchPlan plan_of(std::size_t pictures) {
   BatchPlan plan;
   plan.name = "a <b> & \"c\"";
-  for (std::size_t i = 0; i < pictures; ++i) plan.pictures.push_back({.name = "p" + std::to_string(i), .scene = {}, .reference = {}, .request = {}});
+  for (std::size_t i = 0; i < pictures; ++i) plan.pictures.push_back({.name = std::string("p").append(std::to_string(i)), .scene = {}, .reference = {}, .request = {}});
   return plan;
 }
 

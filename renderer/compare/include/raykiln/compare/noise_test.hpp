@@ -46,7 +46,7 @@ struct NoiseVerdict {
   Evidence strongest;
   std::vector<Evidence> regions;  ///< blocks that differ, at most 16, none inside another
   std::uint64_t tests = 0;        ///< how many chances the family has
-  double chi2 = 0.0;              ///< mean of z^2 over pixels and channels; 1 where only noise is
+  double chi2 = 0.0;              ///< mean of z^2 over pixels and channels; 1 where only noise is, less if errors are cautious
   /// Weighted means over the picture, by channel: sum of w (render - reference) / sum of w reference.
   std::array<double, 3> shift{};
   std::array<double, 3> shift_error{};  ///< one standard deviation of it
