@@ -9,9 +9,9 @@ from support.api import GLB, problem
 def test_a_picture_that_cannot_be_kept_fails_its_job_and_no_other(launch):
     api = launch(options=["--store-bytes", "200000"])
     scene = api.scene(scenes.box_zip("full"))
-    kept = api.job(scene, width=100, height=60, stop={"samples": 1})
-    assert api.wait(kept)["state"] == "completed"  # 72 kB
-    failed = api.wait(api.job(scene, width=200, height=100, stop={"samples": 1}))  # 240 kB
+    kept = api.job(scene, width=60, height=60, stop={"samples": 1})
+    assert api.wait(kept)["state"] == "completed"  # 32 bytes a pixel: 115 kB
+    failed = api.wait(api.job(scene, width=200, height=100, stop={"samples": 1}))  # 640 kB
     assert (failed["state"], failed["error"]["code"]) == ("failed", "storage_full")
     assert failed["error"]["status"] == 507
     problem(api.upload(os.urandom(150_000), GLB, expect=(507,)), 507, "storage_full")
