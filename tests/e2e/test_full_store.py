@@ -14,6 +14,7 @@ def test_a_picture_that_cannot_be_kept_fails_its_job_and_no_other(launch):
     failed = api.wait(api.job(scene, width=200, height=100, stop={"samples": 1}))  # 640 kB
     assert (failed["state"], failed["error"]["code"]) == ("failed", "storage_full")
     assert failed["error"]["status"] == 507
+    assert failed["image"] is None
     problem(api.upload(os.urandom(150_000), GLB, expect=(507,)), 507, "storage_full")
     assert api.image(kept, "exr").status_code == 200
     assert api.wait(api.job(scene, width=20, height=20))["state"] == "completed"

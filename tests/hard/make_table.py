@@ -37,11 +37,7 @@ DUE = [
     ("K10", "last metric", "the predicted time of a scene that no split helps is within a factor 2"),
     ("L06", "notice", "an emitter that no path has hit is announced, with what may be missing"),
     ("L08", "forecast", "the time that many lights take is predicted before the render"),
-    ("M01", "all of it", "no hit is not shown as no noise"),
-    ("M02", "all of it", "heavy tails are flagged beside the error bar"),
     ("M08", "second line", "slopes of stratified and scrambled low-discrepancy samples"),
-    ("M09", "all of it", "the bias of stopping early is bounded"),
-    ("M10", "error shown", "one sample, no sample: the error is unknown, not 0"),
     ("R7", "coverage", "share of truths inside the shown 95 % interval"),
     ("T02", "report", "the reported truncation bias agrees within its own interval"),
 ]

@@ -191,13 +191,14 @@ ImageError image_error(const Film& film, double exposure_stops) {
   if (!(first.mean > 0.0)) return result;
 
   Totals totals;
+  const double gain = std::exp2(exposure_stops);
   for (int y0 = 0; y0 < film.height(); y0 += kStripRows) {
     const int y1 = std::min(y0 + kStripRows, film.height());
     const Strip strip(film, y0, y1);
     for (int y = y0; y < y1; ++y) {
       for (int x = 0; x < film.width(); ++x) {
         const std::size_t i = strip.index(x, y);
-        add_pixel(totals, strip.pixel(i), strip.smoothed(i), first, std::exp2(exposure_stops));
+        add_pixel(totals, strip.pixel(i), strip.smoothed(i), first, gain);
       }
     }
   }

@@ -179,7 +179,8 @@ std::pair<double, double> measure_shift(const ChannelDifference& d, const Measur
     verdict.shift[channel] = sum / light;
     verdict.shift_error[channel] = std::sqrt(variance) / light;
     const double least = found_at * verdict.shift_error[channel];
-    if (channel == 0 || least < verdict.smallest_uniform_change) verdict.smallest_uniform_change = least;
+    const double known = verdict.smallest_uniform_change;  // 0 until a channel has light
+    if (!(known > 0.0) || least < known) verdict.smallest_uniform_change = least;
   }
   return {chi2, noisy};
 }

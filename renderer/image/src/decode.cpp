@@ -40,7 +40,10 @@ std::optional<std::array<std::size_t, 3>> colour_channels(const Names& names) {
     if (auto layer = triple(names, name.substr(0, name.size() - 1))) return layer;
   }
   const bool grey = names.size() == 1 || (names.size() == 2 && position(names, "A"));
-  if (grey) return std::array<std::size_t, 3>{0, 0, 0};
+  if (grey) {
+    const std::size_t only = names.size() == 2 && names.front() == "A" ? 1 : 0;
+    return std::array<std::size_t, 3>{only, only, only};
+  }
   if (const auto y = position(names, "Y")) return std::array<std::size_t, 3>{*y, *y, *y};
   return std::nullopt;
 }
@@ -56,11 +59,12 @@ std::vector<float> gather(const std::vector<float>& values, std::size_t channels
 }
 
 std::optional<DecodeError> check(const OIIO::ImageSpec& spec) {
-  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.deep) {
+  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.deep) {
     return DecodeError{"the file holds no flat picture"};
   }
   const auto pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
-  if (pixels > kMostDecodedPixels || spec.nchannels > kMostDecodedChannels) {
+  if (pixels > kMostDecodedPixels || spec.nchannels > kMostDecodedChannels ||
+      pixels * static_cast<std::uint64_t>(spec.nchannels) > kMostDecodedValues) {
     return DecodeError{"the picture is too large: " + std::to_string(spec.width) + " x " +
                        std::to_string(spec.height) + ", " + std::to_string(spec.nchannels) + " channels"};
   }

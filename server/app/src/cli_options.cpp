@@ -204,6 +204,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   auto* replay = app.add_subcommand("replay", "render one sample of a job of the server, or of a scene, again and print it");
   add_picture_options(*replay, options,
                       "job id (the options of the picture are the job's then), or a scene");
+  add_effects(*replay, options.picture);
   replay->add_option("X", options.replay.x, "pixel column, from the left")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("Y", options.replay.y, "pixel row, from the top")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("SAMPLE", options.replay.sample, "index of the sample, from 0")->required();

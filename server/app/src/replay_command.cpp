@@ -84,8 +84,9 @@ ExitCode replay_of_scene(const CliOptions& options) {
   const auto loaded = intake->load(package->kind, package->files, {});
   if (!loaded) return complain(loaded.error());
   const JobRequest& request = options.picture.request;
-  const auto settings = render_settings(request, *loaded->scene);
+  auto settings = render_settings(request, *loaded->scene);
   if (!settings) return complain(settings.error());
+  settings->effects = options.picture.effects;
   const ReplayPlace& at = options.replay;
   if (at.x >= settings->width || at.y >= settings->height) {
     return complain({ErrorKind::kInvalid, "invalid_request", "the pixel lies outside the picture", ""});

@@ -1,5 +1,6 @@
 #include "raykiln/jobs/job_request.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "raykiln/base/ids.hpp"
@@ -91,6 +92,9 @@ std::optional<Error> stop_error(const JobRequest& r, const JobLimits& limits) {
   }
   for (const std::uint64_t samples : stop.tile_samples) {
     if (samples > stop.samples) return wrong("/stop/tile_samples", "must not exceed /stop/samples");
+  }
+  if (*std::max_element(stop.tile_samples.begin(), stop.tile_samples.end()) == 0) {
+    return wrong("/stop/tile_samples", "must not all be 0");
   }
   return std::nullopt;
 }

@@ -58,6 +58,12 @@ void Scheduler::Core::rest(LiveJob& job) {
 
 void Scheduler::Core::finish(LiveJob& job, DoneBy by) {
   JobSnapshot& s = job.snapshot;
+  refresh(job);
+  if (s.progress.samples_done == 0) {  // other jobs had the workers all the time
+    return begin_ending(job, JobEvent::kFail,
+                        Error{ErrorKind::kUnavailable, "no_samples",
+                              "the time was over before a worker was free: ask for more seconds", "/stop/seconds"});
+  }
   s.done_by = by;
   s.progress.stop_fraction = 1.0;
   auto samples = job.plan->tile_samples();

@@ -300,6 +300,9 @@ void Scheduler::Core::archived(const JobId& id, const Status& saved, JobImagePtr
       event = JobEvent::kFail;
       error = saved.error();
     }
+    image.reset();
+    job->film.reset();  // else the final state would name a picture that nobody keeps
+    job->snapshot.image_revision = 0;
   }
   if (image) {
     auto last = std::make_shared<JobImage>(*image);

@@ -97,7 +97,8 @@ void warn_of_picture(const render::RenderSettings& settings, const render::Scene
 
 std::uint64_t film_memory(const JobRequest& request) {
   const std::uint64_t film = render::film_bytes(request.width, request.height);
-  const std::uint64_t picture = std::uint64_t{3 * sizeof(float)} *
+  // RGB and the seconds of a pixel.
+  const std::uint64_t picture = std::uint64_t{4 * sizeof(float)} *
                                 static_cast<std::uint64_t>(request.width) *
                                 static_cast<std::uint64_t>(request.height);
   return film > UINT64_MAX - picture ? UINT64_MAX : film + picture;

@@ -83,6 +83,7 @@ TEST(Decode, LayersAndGrey) {
   EXPECT_EQ(decoded(exr_with({"beauty.R", "beauty.G", "beauty.B", "depth.Z"})).image.rgb,
             (std::vector<float>{0, 1, 2, 10, 11, 12}));
   EXPECT_EQ(decoded(exr_with({"Y"})).image.rgb, (std::vector<float>{0, 0, 0, 10, 10, 10}));
+  EXPECT_EQ(decoded(exr_with({"A", "Y"})).image.rgb, (std::vector<float>{1, 1, 1, 11, 11, 11}));
 }
 
 TEST(Decode, RefusesWhatIsNoPicture) {
@@ -90,6 +91,9 @@ TEST(Decode, RefusesWhatIsNoPicture) {
   EXPECT_TRUE(fails({}));
   EXPECT_TRUE(fails({'h', 'e', 'l', 'l', 'o'}));
   EXPECT_TRUE(fails(exr_with({"depth.Z", "id"})));
+  std::vector<std::string> many{"R", "G", "B"};
+  for (int i = 0; i < kMostDecodedChannels; ++i) many.push_back(std::to_string(i));
+  EXPECT_TRUE(fails(exr_with(many)));
   for (Bytes whole : {std::get<Bytes>(encode_exr(gradient(), {})), std::get<Bytes>(encode_png(gradient(), 0.0))}) {
     for (const std::size_t length : {std::size_t{4}, std::size_t{20}, whole.size() / 2}) {
       EXPECT_TRUE(fails(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)))) << length;

@@ -3,6 +3,7 @@
 
 #include "../input_file.hpp"
 #include "../output_file.hpp"
+#include "batch_result.hpp"
 #include "raykiln/app/cli.hpp"
 #include "value.hpp"
 
@@ -13,7 +14,7 @@ constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 30U;
 
 std::string text_of(const Value& map, const char* key) {
   const Value* value = map.find(key);
-  return value != nullptr && value->is_text() && value->text != "null" ? value->text : "";
+  return value != nullptr && value->is_text() && (value->quoted || value->text != "null") ? value->text : "";
 }
 
 /// False, and a message, when a file cannot be read or written.
@@ -33,6 +34,12 @@ bool replace_reference(const std::filesystem::path& picture, const std::filesyst
 bool needs_approval(const Value& picture) {
   const std::string verdict = text_of(picture, "verdict");
   return verdict == "differs" || verdict == "no_reference";
+}
+
+/// A report comes from elsewhere: it may choose neither a file to read nor, but for a picture, one to write.
+bool is_safe(const std::string& name, const std::filesystem::path& reference) {
+  const auto kind = reference.extension();
+  return name.find('/') == std::string::npos && (kind == ".exr" || kind == ".png");
 }
 
 }  // namespace
@@ -59,7 +66,11 @@ ExitCode approve_command(const CliOptions& options) {
       std::cerr << "raykiln: " << name << " has no picture or names no reference\n";
       return ExitCode::kNotFound;
     }
-    if (!replace_reference(wanted.report / text_of(picture, "picture"), reference)) return ExitCode::kFailure;
+    if (!is_safe(name, reference)) {
+      std::cerr << "raykiln: " << name << ": a reference must be an .exr or .png file, not " << reference << '\n';
+      return ExitCode::kUsage;
+    }
+    if (!replace_reference(wanted.report / picture_file(name, ".exr"), reference)) return ExitCode::kFailure;
     std::cout << name << " -> " << reference << '\n';
   }
   for (const auto& name : names) std::cerr << "raykiln: the report has no picture " << name << '\n';

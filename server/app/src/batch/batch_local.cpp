@@ -9,6 +9,7 @@
 #include "raykiln/app/progress.hpp"
 #include "raykiln/app/local_render.hpp"
 #include "raykiln/app/scene_package.hpp"
+#include "raykiln/jobs/picture_error.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -32,6 +33,9 @@ Result<std::vector<std::uint8_t>> render_one(const PlannedPicture& planned, Loca
   if (!picture) return picture.error();
   result.seconds = picture->job.statistics.render_seconds;
   result.samples = picture->job.progress.samples_per_pixel;
+  const auto& accuracy = picture->job.accuracy;
+  if (accuracy && accuracy->known()) result.error_reached = accuracy->error.value;
+  result.limit_reached = request.stop.error && !(accuracy && target_met(request.stop, *accuracy));
   return local_exr(*picture, *scene);
 }
 

@@ -106,12 +106,10 @@ class Planner {
       : file_(file), folder_(std::move(folder)), limits_(limits) {}
 
   BatchPlan plan() {
-    only(file_, "the batch", {"name", "priority", "max_active", "fail_fast", "reuse", "false_alarms", "tolerance",
+    only(file_, "the batch", {"name", "fail_fast", "false_alarms", "tolerance",
                               "thresholds", "defaults", "reference", "scenes"});
     plan_.name = text(file_, "name", "batch");
-    plan_.max_active = static_cast<int>(number(file_, "max_active", 1, kMostActive, plan_.max_active));
     plan_.fail_fast = flag(file_, "fail_fast", false);
-    plan_.reuse = flag(file_, "reuse", true);
     read_comparison();
     const auto& scenes = list(file_, "scenes");
     if (scenes.empty()) wrong(file_, "scenes is missing");
@@ -169,6 +167,11 @@ class Planner {
     std::string name = file_name_text(label);
     if (!camera_name.empty()) name += '-' + file_name_text(camera_name);
     if (!setting_name.empty()) name += '-' + file_name_text(setting_name);
+    // Files are named after pictures, with endings of their own.
+    for (const char* ending : {".reference", ".difference", ".z"}) {
+      if (name.ends_with(ending)) wrong(scene, "the name \"" + name + "\" may not end in " + ending);
+    }
+    if (name.size() > kMostName) wrong(scene, "the name of a picture is longer than " + std::to_string(kMostName));
     if (!names_.insert(name).second) {
       wrong(scene, "two pictures are named \"" + name + "\": give scenes or settings a name of their own");
     }
@@ -208,7 +211,6 @@ class Planner {
       whole.set("stop", stop);
     }
     if (whole.find("camera") == nullptr) whole.set("camera", camera_request(camera));
-    if (const Value* priority = file_.find("priority")) whole.set("priority", *priority);
     whole.set("scene", text_value(kNoScene));
     whole.set("name", text_value(name));
     auto parsed = parse_job_request(to_json(whole), limits_);

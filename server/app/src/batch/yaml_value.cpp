@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
 constexpr int kMostLevels = 64;
 constexpr int kMostNodes = 100'000;
+constexpr std::size_t kMostText = 4 * kMostBytes;  ///< of all keys and values, aliases written out
 
 Error invalid(const std::string& why, int line) {
   return {ErrorKind::kInvalid, "invalid_file", why, line > 0 ? "line " + std::to_string(line) : ""};
@@ -25,6 +26,7 @@ class Converter {
     if (fault_) return value;
     if (node.IsScalar()) {
       value.kind = Value::Kind::kScalar;
+      if (!has_room(node, value.line)) return value;
       value.text = node.Scalar();
       value.quoted = node.Tag() == "!";
     } else if (node.IsSequence()) {
@@ -41,16 +43,24 @@ class Converter {
  private:
   void add(Value& map, const YAML::Node& key, const YAML::Node& item, int level) {
     if (!key.IsScalar()) return fail("a key must be text", key.Mark().line + 1);
+    if (!has_room(key, key.Mark().line + 1)) return;
     if (map.find(key.Scalar()) != nullptr) {
       return fail("the key \"" + key.Scalar() + "\" is there twice", key.Mark().line + 1);
     }
     map.map.emplace_back(key.Scalar(), convert(item, level + 1));
+  }
+  /// A short file may repeat a long text by many aliases.
+  bool has_room(const YAML::Node& text, int line) {
+    text_ += text.Scalar().size();
+    if (text_ > kMostText) fail("the file is too large with its aliases written out", line);
+    return text_ <= kMostText;
   }
   void fail(const std::string& why, int line) {
     if (!fault_) fault_ = invalid(why, line);
   }
 
   int nodes_ = 0;
+  std::size_t text_ = 0;
   std::optional<Error> fault_;
 };
 

@@ -14,6 +14,8 @@ namespace raykiln::render {
 
 inline constexpr std::uint64_t kMostDecodedPixels = std::uint64_t{1} << 28U;
 inline constexpr int kMostDecodedChannels = 64;
+/// Pixels x channels, 4 bytes each while a file is read: a header of some bytes may claim them.
+inline constexpr std::uint64_t kMostDecodedValues = std::uint64_t{1} << 30U;
 
 struct DecodedImage {
   Image image;           ///< linear, or display values in [0, 1] of a PNG
