@@ -211,8 +211,9 @@ def test_a_zip_made_by_others(api, to, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.one_thread
 def test_selftest_passes_on_this_binary():
-    done = raykiln("selftest", "--json", timeout=300)
+    done = raykiln("selftest", "--json", timeout=600)
     report = json.loads(done.stdout)
     failed = [row for row in report["rows"] if not row["passed"]]
     assert done.returncode == 0 and report["failed"] == 0, failed

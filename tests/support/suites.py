@@ -148,6 +148,7 @@ def long_statistics() -> Tally:
 
 NOT_SIZE = ["-m", "not size"]
 NOT_MEASURED = ["-m", "not size and not measured"]
+THREADED = ["-m", "not size and not measured and not one_thread"]
 
 SUITES = [
     Suite("hygiene", "what the tree may hold and which module may use what",
@@ -169,7 +170,7 @@ SUITES = [
     Suite("tsan", "the server's C++ tests under TSan",
           lambda: ctest_folders("tsan", "tsan", SERVER, SANITIZERS), ["tsan"], True),
     Suite("tsan-e2e", "the daemon from outside, under TSan",
-          lambda: pytest("tsan-e2e", "tests/e2e", *NOT_MEASURED, preset="tsan",
+          lambda: pytest("tsan-e2e", "tests/e2e", *THREADED, preset="tsan",
                          env={**SANITIZERS, "RAYKILN_SLOW": "15"}), ["web", "tsan"], True),
     Suite("long", "golden, property and hard tests with their long sample counts", long_statistics,
           ["test"], True),

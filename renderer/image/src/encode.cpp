@@ -20,7 +20,7 @@ std::uint8_t display_byte(double linear) {
   return static_cast<std::uint8_t>(std::lround(255.0 * display_value(linear)));
 }
 
-/// display_byte() without a power for each value: where the byte steps up, found once a picture, and
+/// display_byte() without a power for each value: where the byte steps up, found once a process, and
 /// the byte at the start of each of kCells equal parts of [0, 1]. A part holds about one step at
 /// most, so that what is left is a comparison or two.
 class DisplayBytes {
@@ -116,14 +116,16 @@ std::variant<Bytes, EncodeError> encode_linear(
 }  // namespace
 
 std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops,
-                                            const std::string& note) {
+                                            const std::string& note, PngEffort effort) {
   if (!consistent(image)) return EncodeError{"the picture has no pixels"};
   const double gain = std::exp2(exposure_stops);
   std::vector<std::uint8_t> display(image.rgb.size());
+  static const DisplayBytes bytes;
   std::transform(image.rgb.begin(), image.rgb.end(), display.begin(),
-                 [gain, bytes = DisplayBytes()](float x) { return bytes(gain * static_cast<double>(x)); });
+                 [gain](float x) { return bytes(gain * static_cast<double>(x)); });
   OIIO::ImageSpec spec = rgb_spec(image, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  if (effort == PngEffort::kQuick) spec.attribute("png:compressionLevel", 1);
   if (!note.empty()) spec.attribute("ImageDescription", note);
   return encode("a.png", spec, OIIO::TypeDesc::UINT8, display.data());
 }

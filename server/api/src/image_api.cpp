@@ -117,16 +117,17 @@ render::ValueRange map_range(const std::vector<float>& values, const std::string
 Result<std::string> encode(const JobImage& image, const ImageQuery& query,
                            const std::string& version) {
   std::variant<render::Bytes, render::EncodeError> encoded;
+  const auto effort = image.is_final ? render::PngEffort::kSmall : render::PngEffort::kQuick;
   if (query.half) {
     encoded = encode_half(image, version);
   } else if (query.exr) {
     encoded = render::encode_exr(image.image, exr_attributes(image, version), planes_of(image, query.layer));
   } else if (query.layer == "beauty") {
-    encoded = render::encode_png(image.image, query.exposure_stops);
+    encoded = render::encode_png(image.image, query.exposure_stops, {}, effort);
   } else {
     const auto values = map_values(image, query.layer);
     encoded = render::encode_png(render::false_colour(values, image.image.width, image.image.height,
-                                                      map_range(values, query.layer)), 0.0);
+                                                      map_range(values, query.layer)), 0.0, {}, effort);
   }
   if (const auto* error = std::get_if<render::EncodeError>(&encoded)) {
     return Error{ErrorKind::kInternal, "internal", error->message, {}};
@@ -167,12 +168,12 @@ Answer Api::get_image(const Request& request) {
   response.headers = {{"ETag", '"' + key + '"'},
                       {"Raykiln-Revision", std::to_string(image.revision)},
                       {"Cache-Control", "no-cache"}};
-  if (!query.exr && is_map(query.layer)) tell_range(response, image, query.layer);
   const auto* known = find_value(request.headers, "if-none-match");
   if (known != nullptr && etag_matches(*known, '"' + key + '"')) {
     response.status = 304;
     return response;
   }
+  if (!query.exr && is_map(query.layer)) tell_range(response, image, query.layer);
   const auto bytes = images_.get(key, [&] {
     const auto begun = std::chrono::steady_clock::now();
     auto encoded = encode(image, query, config_.version);

@@ -9,7 +9,7 @@ namespace raykiln::server {
 namespace {
 
 /// Judging costs at most this part of the time between two looks.
-constexpr double kShareOfTime = 0.01;
+constexpr double kShareOfTime = 0.005;
 /// Looks follow at least so far apart, as a ratio of render seconds.
 constexpr double kStep = 1.1;
 /// Larger films are judged at decisions and in the end only: one look would hold up this strand.

@@ -45,6 +45,17 @@ TEST(EncodePng, KnownColoursRoundExactly) {
              {0, 10, 118, 127, 188, 255, 255, 0, 0, 255});
 }
 
+TEST(EncodePng, EffortChangesTheBytesButNoPixel) {
+  std::vector<float> values;
+  for (int i = 0; i < 20'000; ++i) values.push_back(static_cast<float>((i * 7919) % 1000) / 1000.0F);
+  const Image image = grey_row(values);
+  const auto small = std::get<Bytes>(encode_png(image, 0.0));
+  const auto quick = std::get<Bytes>(encode_png(image, 0.0, {}, PngEffort::kQuick));
+  EXPECT_NE(small, quick);
+  OIIO::ImageSpec spec;
+  EXPECT_EQ(read_back<std::uint8_t>(small, "a.png", spec), read_back<std::uint8_t>(quick, "a.png", spec));
+}
+
 // Around every value at which the byte changes, and over the whole range, as the formula says.
 TEST(EncodePng, EveryByteIsThatOfTheFormula) {
   const auto formula = [](double x) {

@@ -17,10 +17,17 @@ struct EncodeError {
   std::string message;
 };
 
+/// The bytes differ, the pixels do not.
+enum class PngEffort {
+  kSmall,
+  kQuick,  ///< for a picture that is looked at once: several times as fast, somewhat larger
+};
+
 /// 8-bit sRGB PNG of exposure 2^stops times the picture, clipped to [0, 1] (NaN shows as black).
 /// `note` becomes the text chunk "Description", if it is not empty.
 [[nodiscard]] std::variant<Bytes, EncodeError> encode_png(const Image& image, double exposure_stops,
-                                                          const std::string& note = {});
+                                                          const std::string& note = {},
+                                                          PngEffort effort = PngEffort::kSmall);
 
 /// Further channels of an EXR, beside R, G and B.
 struct ExtraPlane {
