@@ -98,7 +98,7 @@ bool override_material(const JsonAt& at, Material& material) {
   color("specular", material.specular, kLargestWeight);
   color("emission", material.emission, bright);
   number("transparent", material.transparent, 0.0, 1.0);
-  number("specular_exp", material.specular_exp, 0.0, 1e12);
+  number("specular_exp", material.specular_exp, 0.0, 1e15);
   number("index_of_refraction", material.index_of_refraction, 1e-3, 1e20);
   return !at.diagnostics().failed();
 }

@@ -85,18 +85,24 @@ BsdfValue evaluate_other_side(const Bsdf& b, double cosine, double x_specular) {
   return {f * cos_i, diffuse + b.choice.specular * b.choice.specular_through * lobe};
 }
 
-/// `sampled_x` is the exact 1 - cos of a specular sample, or negative: then it is measured.
+/// What is known of a direction beside its rounded components.
+struct KnownDirection {
+  double x = -1.0;       ///< exact 1 - cos to the axis of the lobe; negative: it is measured
+  double cosine = -2.0;  ///< exact cosine with n; below -1: it is measured
+};
+
 template <Sides kSides>
-BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, double sampled_x) {
+BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, const KnownDirection& known) {
   if (b.black) return {};
   const double side = dot(Vec3d(b.ng), Vec3d(wi));
   if constexpr (kSides == Sides::kNear) {
     const bool far = side <= 0.0 && b.model.direction_sampling == DirectionSampling::kBsdf;
     if (far) return {};
   }
-  const double cosine = std::clamp(dot(Vec3d(b.n), Vec3d(wi)), -1.0, 1.0);
+  const double cosine =
+      known.cosine >= -1.0 ? known.cosine : std::clamp(dot(Vec3d(b.n), Vec3d(wi)), -1.0, 1.0);
   const Vec3f& axis = side > 0.0 ? b.mirror : b.refracted;
-  const double x = sampled_x >= 0.0 ? sampled_x : one_minus_cos(axis, wi);
+  const double x = known.x >= 0.0 ? known.x : one_minus_cos(axis, wi);
   BsdfValue value;
   if (side > 0.0) {
     value = evaluate_same_side<kSides>(b, cosine, x);
@@ -110,17 +116,27 @@ BsdfValue evaluate_with(const Bsdf& b, const Vec3f& wi, double sampled_x) {
 }
 
 template <Sides kSides>
-BsdfSample finish(const Bsdf& b, const Vec3f& wi, Lobe lobe, bool through, double sampled_x) {
+BsdfSample finish(const Bsdf& b, const Vec3f& wi, Lobe lobe, bool through,
+                  const KnownDirection& known) {
   // The part of a lobe that reaches beyond its own side of the surface is lost, not reflected.
   const double side = dot(Vec3d(b.ng), Vec3d(wi));
   if (lobe != Lobe::kNone && (through ? side >= 0.0 : side <= 0.0)) return {};
-  const BsdfValue value = evaluate_with<kSides>(b, wi, sampled_x);
+  const BsdfValue value = evaluate_with<kSides>(b, wi, known);
   if (value.f_cos == Rgbd(0.0)) return {};
   return {.wi = wi,
           .weight = value.f_cos / value.pdf,
           .pdf = value.pdf,
           .lobe = lobe,
           .radiance_scale = lobe == Lobe::kSpecular && through ? b.radiance_scale : 1.0};
+}
+
+/// A lobe narrower than a float direction can tell is its axis, and the angle of that with n is known:
+/// measured on rounded directions, cos_i and cos_o would differ by 1e-7 tan(theta), and a mirror or
+/// a clear pane would take that much of the light.
+template <Sides kSides>
+BsdfSample axis_itself(const Bsdf& b, bool through) {
+  return finish<kSides>(b, through ? b.refracted : b.mirror, Lobe::kSpecular, through,
+                        {.x = 0.0, .cosine = through ? -b.cos_t : b.cos_o});
 }
 
 /// What differs with the direction of view at a border; the rest of Bsdf is set.
@@ -175,22 +191,23 @@ BsdfSample sample(const Bsdf& b, const DirectionNumbers& numbers) {
   if (b.black) return {};
   const auto& [lobe, side, u, v] = numbers;
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
-    BsdfSample found = finish<kSides>(b, sample_uniform_sphere(u, v), Lobe::kNone, false, -1.0);
+    BsdfSample found = finish<kSides>(b, sample_uniform_sphere(u, v), Lobe::kNone, false, {});
     if (found.pdf > 0.0) found.lobe = Lobe::kDiffuse;
     return found;
   }
   const bool specular = lobe < b.choice.specular;
   const double through_share = specular ? b.choice.specular_through : b.choice.diffuse_through;
   const bool through = side < through_share;
+  if (specular && b.exponent >= kLargestExponent) return axis_itself<kSides>(b, through);
   if (specular) {
     const double x = sample_one_minus_cos(u, b.exponent);
     return finish<kSides>(b, around_axis(through ? b.refracted : b.mirror, x, v), Lobe::kSpecular,
-                          through, x);
+                          through, {.x = x});
   }
   const double x = b.model.light.diffuse_sampling == DiffuseSampling::kCosine
                        ? sample_cosine_one_minus_cos(u)
                        : sample_one_minus_cos(u, 0.0);
-  return finish<kSides>(b, around_axis(through ? -b.n : b.n, x, v), Lobe::kDiffuse, through, -1.0);
+  return finish<kSides>(b, around_axis(through ? -b.n : b.n, x, v), Lobe::kDiffuse, through, {});
 }
 
 DirectionNumbers numbers_of(const VertexKey& vertex) {
@@ -217,10 +234,10 @@ OpaqueBsdf make_opaque_bsdf(const Material& material, const Vec3f& ng, const Vec
 }
 
 BsdfValue evaluate(const Bsdf& b, const Vec3f& wi) {
-  return evaluate_with<Sides::kBoth>(b, wi, -1.0);
+  return evaluate_with<Sides::kBoth>(b, wi, {});
 }
 BsdfValue evaluate(const OpaqueBsdf& b, const Vec3f& wi) {
-  return evaluate_with<Sides::kNear>(b, wi, -1.0);
+  return evaluate_with<Sides::kNear>(b, wi, {});
 }
 
 BsdfSample sample_bsdf(const Bsdf& b, const DirectionNumbers& numbers) {

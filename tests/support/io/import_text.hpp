@@ -93,7 +93,7 @@ inline void expect_sound(const ImportedScene& imported) {
   for (const Material& m : scene.materials) {
     ASSERT_TRUE(finite(m.diffuse) && finite(m.specular) && finite(m.emission));
     ASSERT_TRUE(m.transparent >= 0.0F && m.transparent <= 1.0F);
-    ASSERT_TRUE(m.specular_exp >= 0.0 && m.specular_exp <= 1e12);
+    ASSERT_TRUE(m.specular_exp >= 0.0 && m.specular_exp <= 1e15);
     ASSERT_TRUE(m.index_of_refraction > 0.0F && std::isfinite(m.index_of_refraction));
   }
   for (const PointLight& l : scene.point_lights) ASSERT_TRUE(finite(l.position) && finite(l.intensity));

@@ -110,5 +110,26 @@ TEST(BsdfSides, OddShadingNormalsStayHarmless) {
   }
 }
 
+// Near grazing too, where cosines measured on rounded directions differ by 1e-7 tan(theta).
+TEST(BsdfSides, AtTheLargestExponentAMirrorTakesNothingAndAPaneIsNotThere) {
+  const Material mirror = support::make_material(0.0F, 1.0F, 0.0F, kLargestExponent);
+  const Material pane = support::make_material(0.0F, 1.0F, 1.0F, kLargestExponent, 1.0F);
+  for (const support::NamedModel& m : {support::NamedModel{"physical", support::kPhysicalBsdf}, support::NamedModel{"seed", support::kSeedBsdf}}) {
+    for (const double degrees : {0.0, 30.0, 60.0, 85.0, 89.9, 89.9999}) {
+      const Vec3f wo = support::at_degrees(degrees);
+      for (const double u : {0.1, 0.5, 0.9}) {
+        const DirectionNumbers numbers{.lobe = 0.5, .side = 0.5, .u = u, .v = 0.3};
+        const BsdfSample reflected = sample_bsdf(make_opaque_bsdf(mirror, kUp, kUp, wo, m.model), numbers);
+        EXPECT_EQ(reflected.wi, Vec3f(-wo.x, -wo.y, wo.z)) << m.name << ' ' << degrees;
+        EXPECT_NEAR(reflected.weight.x, 1.0, 4e-16) << m.name << ' ' << degrees;
+        if (m.model.light.fresnel == FresnelFormula::kSchlick) continue;  // not 0 at index 1
+        const BsdfSample through = sample_bsdf(make_bsdf(pane, kUp, kUp, wo, m.model), numbers);
+        EXPECT_EQ(through.wi, -wo) << m.name << ' ' << degrees;
+        EXPECT_NEAR(through.weight.x, 1.0, 4e-16) << m.name << ' ' << degrees;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace raykiln::render

@@ -26,7 +26,7 @@ struct LobeChoice {
   double specular_through = 0.0;   ///< of a specular pick: refracted
 };
 
-/// Above this a lobe is narrower than what a float direction can tell apart.
+/// From here on a lobe is narrower than what a float direction can tell apart: a mirror, a clear border.
 inline constexpr double kLargestExponent = 1e15;
 
 /// Everything that depends on the point and wo. All vectors are unit and in world space.
