@@ -297,3 +297,25 @@ def test_replay_gives_the_same_sample_again(folder, tmp_path):
     assert not sample["dropped"]
     assert np.allclose(picture.pixels[4, 3], sample["radiance"], rtol=1e-6)
     assert raykiln("replay", folder / "box.obj", 8, 0, 0, *words).returncode == 2
+
+
+def test_accuracy_measures_every_knob_and_judges_its_own_reference(folder, tmp_path):
+    page, table = tmp_path / "knobs.html", tmp_path / "knobs.csv"
+    done = raykiln("accuracy", folder, "--size", "16x12", "--seconds", 0.02, "--reference-seconds", 4,
+                   "--html", page, "--csv", table, "--json", timeout=120)
+    report = json.loads(done.stdout)
+    assert done.returncode == (0 if report["reference"]["exact_enough"] else 12), done.stderr
+    knobs = {line["knob"]: line for line in report["knobs"]}
+    assert {"defaults", "diffuse=uniform", "light_model=seed", "effects=all"} <= set(knobs)
+    assert not knobs["defaults"]["bias"]["certain"]
+    points = knobs["defaults"]["points"]
+    assert [p["samples"] for p in points] == [2 << i for i in range(len(points))]
+    assert report["reference"]["error"] > 0 and all(p["error"] > 0 for p in points)
+    assert len(table.read_text().splitlines()) == 1 + sum(len(line["points"]) for line in report["knobs"])
+    text = page.read_text()
+    assert "<svg" in text and "http" not in text and all(f">{name}<" in text for name in knobs)
+
+
+def test_accuracy_refuses_what_would_take_for_ever(folder):
+    assert raykiln("accuracy", folder, "--size", "1000x1000").returncode == 2
+    assert raykiln("accuracy", folder / "none.obj").returncode == 3

@@ -35,6 +35,7 @@ ARROWS = {
     "renderer/effects": ["renderer/shading"],
     "renderer/integrator": ["renderer/accel", "renderer/effects"],
     "renderer/render": ["renderer/integrator", "renderer/image", "renderer/io"],
+    "renderer/study": ["renderer/render", "renderer/accuracy"],
     "renderer/lint": ["renderer/io", "renderer/scene"],
     "renderer/selftest": ["renderer/render"],
     "server/base": [],
@@ -47,7 +48,7 @@ ARROWS = {
     "server/api": ["server/scheduler", "server/store", "server/events"],
     "server/http": ["server/api"],
     "server/app": ["server/http", "server/api", "renderer/render", "renderer/lint",
-                   "renderer/selftest", "renderer/compare"],
+                   "renderer/selftest", "renderer/compare", "renderer/study"],
 }
 # A package's headers, and the folders that may include them.
 PACKAGES = {

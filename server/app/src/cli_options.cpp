@@ -96,6 +96,21 @@ void add_effects(CLI::App& command, PictureOptions& picture) {
       "auto: what the scene calls for; all; or without=refraction,... (auto)");
 }
 
+/// What is looked at, and the numbers it is rendered with.
+void add_view(CLI::App& command, CliOptions& options, const char* size) {
+  JobRequest& request = options.picture.request;
+  command.add_option_function<std::string>(
+      "--size",
+      [&request](const std::string& text) {
+        if (auto error = read_size(text, request); !error.empty()) throw CLI::ValidationError(error);
+      },
+      size);
+  command.add_option("--seed", request.seed, "of the random numbers")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}))
+      ->capture_default_str();
+  command.add_option("--camera", options.picture.camera, "name or index of a camera of the scene");
+}
+
 constexpr const char* kSceneFiles = ".obj, .gltf, .glb, .zip or a folder";
 
 void add_picture_options(CLI::App& command, CliOptions& options, const char* what = kSceneFiles) {
@@ -110,16 +125,7 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
                      "most reflections after the first hit (1024 with roulette, else 8)")
       ->check(CLI::Range(0, limits.max_depth));
   add_light_model(command, request);
-  command.add_option_function<std::string>(
-      "--size",
-      [&request](const std::string& text) {
-        if (auto error = read_size(text, request); !error.empty()) throw CLI::ValidationError(error);
-      },
-      "WxH in pixels (640x480)");
-  command.add_option("--seed", request.seed, "of the random numbers")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}))
-      ->capture_default_str();
-  command.add_option("--camera", options.picture.camera, "name or index of a camera of the scene");
+  add_view(command, options, "WxH in pixels (640x480)");
   command.add_option("--tile", request.tile, "edge of a tile in pixels; changes no pixel")
       ->check(CLI::Range(1, limits.max_tile))
       ->capture_default_str();
@@ -186,6 +192,23 @@ void add_batch(CLI::App& app, CliOptions& options) {
   approve->add_flag("--all", options.approve.all, "all that differ or have no reference yet")->excludes(names);
 }
 
+void add_accuracy(CLI::App& app, CliOptions& options) {
+  auto* accuracy = app.add_subcommand(
+      "accuracy", "measure what each knob costs on a scene: error against seconds, and bias");
+  accuracy->add_option("SCENE", options.scene, kSceneFiles)->required();
+  add_view(*accuracy, options, "WxH in pixels, at most 65536 of them (160x120)");
+  accuracy->add_option("--seconds", options.accuracy.seconds, "of one processor, for each knob")
+      ->check(CLI::Range(1e-3, 86400.0))
+      ->capture_default_str();
+  accuracy->add_option("--reference-seconds", options.accuracy.reference_seconds,
+                       "of one processor, at most; ten times as exact takes a hundred times as long")
+      ->check(CLI::Range(1e-3, 8640000.0))
+      ->capture_default_str();
+  accuracy->add_option("--html", options.accuracy.html, "report to look at, in one file");
+  accuracy->add_option("--csv", options.accuracy.csv, "all points");
+  accuracy->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
+}
+
 void add_commands(CLI::App& app, CliOptions& options) {
   auto* render = app.add_subcommand("render", "render a scene here, without a server");
   add_picture_options(*render, options);
@@ -209,6 +232,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   replay->add_option("Y", options.replay.y, "pixel row, from the top")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("SAMPLE", options.replay.sample, "index of the sample, from 0")->required();
 
+  add_accuracy(app, options);
   add_compare(app, options.compare);
   add_batch(app, options);
   auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
@@ -260,6 +284,10 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
   options.command = app.get_subcommands().front()->get_name();
   const CLI::App* used = app.get_subcommands().front();
   if (used->get_option_no_throw("--samples") != nullptr) complete_stops(*used, options.picture.request);
+  if (options.command == "accuracy" && used->count("--size") == 0) {
+    options.picture.request.width = 160;
+    options.picture.request.height = 120;
+  }
   options.picture.request.camera = camera_choice(options.picture.camera);
   for (const auto& output : options.outputs) {
     if (output.extension() == ".exr" || output.extension() == ".png") continue;
@@ -273,6 +301,7 @@ ExitCode run_cli(const CliOptions& options) {
   if (options.command == "render") return render_command(options);
   if (options.command == "lint") return lint_command(options);
   if (options.command == "effects") return effects_command(options);
+  if (options.command == "accuracy") return accuracy_command(options);
   if (options.command == "replay") return replay_command(options);
   if (options.command == "compare") return compare_command(options);
   if (options.command == "batch") return batch_command(options);

@@ -51,6 +51,12 @@ struct ApproveOptions {
   bool all = false;                   ///< every picture that differs or has no reference yet
 };
 
+/// What `accuracy` spends and writes.
+struct AccuracyOptions {
+  double seconds = 1.0, reference_seconds = 300.0;  ///< of one processor
+  std::filesystem::path html, csv;                  ///< files to write; empty: none
+};
+
 struct CliOptions {
   std::string command;
   std::string server = "http://127.0.0.1:8080";
@@ -63,6 +69,7 @@ struct CliOptions {
   CompareOptions compare;
   BatchOptions batch;
   ApproveOptions approve;
+  AccuracyOptions accuracy;
   int threads = 0;
   bool wait = false;
   std::string job;
@@ -89,6 +96,10 @@ struct ParsedCli {
 
 /// Lists the effects that a scene calls for with these settings, and what is left out.
 [[nodiscard]] ExitCode effects_command(const CliOptions& options);
+
+/// Measures what the knobs of the renderer cost on a scene: error against seconds, and bias. kLimitReached when
+/// the reference was not ten times as exact as what it judges.
+[[nodiscard]] ExitCode accuracy_command(const CliOptions& options);
 
 /// Renders one sample of one pixel again and prints its radiance, finite or not: of a scene, here, or
 /// of a job, on its server, where SCENE is the id of a job and no such file is there.

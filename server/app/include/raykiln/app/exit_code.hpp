@@ -18,7 +18,7 @@ enum class ExitCode : int {
   kBusy = 9,            ///< the server cannot take more now: try later
   kCheckFailed = 10,    ///< selftest: a check failed; lint: the scene has errors
   kImageDiffers = 11,   ///< compare, batch: a render is not its reference
-  kLimitReached = 12,   ///< batch: a limit was reached before the error target
+  kLimitReached = 12,   ///< batch: before the error target; accuracy: before the reference was exact enough
 };
 
 [[nodiscard]] inline int to_int(ExitCode code) { return static_cast<int>(code); }
@@ -37,7 +37,7 @@ enum class ExitCode : int {
          "  9  the server is busy or stopping; try again later\n"
          "  10 selftest: a check failed; lint: the scene has errors\n"
          "  11 compare, batch: a render differs from its reference\n"
-         "  12 batch: a limit was reached before the error target\n";
+         "  12 batch: a limit was reached before the error target; accuracy: before the reference was exact enough\n";
 }
 
 }  // namespace raykiln::server
