@@ -2,32 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "pixel_statistics.hpp"
 #include "raykiln/accuracy/quantiles.hpp"
 #include "raykiln/image/display.hpp"
+#include "smoothed_means.hpp"
+#include "tally.hpp"
 
 namespace raykiln::render {
 namespace {
 
-constexpr int kWindowRadius = 2;  ///< of the windows that means are smoothed over
-constexpr int kStripRows = 16;    ///< rows that are worked on at once
-constexpr double kTailPixel = 0.45;  ///< largest_share from which on one or two samples make up a variance
-constexpr double kTailImage = 0.2;   ///< part of rel_mse in such pixels that raises the flag
+constexpr int kWindowRadius = 2;
+/// Rows above and below a strip: squared errors of the windows' pixels need windows of their own.
+constexpr int kMargin = 2 * kWindowRadius;
+constexpr int kStripRows = 16;       ///< rows that are worked on at once
+constexpr double kFewEvents = 15.0;  ///< samples that make up the variance of 3 x 3 pixels: too few below
+constexpr double kTailImage = 0.4;   ///< part of rel_mse in such pixels that raises the flag
 constexpr double kTailWidening = 3.0;
 constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
-
-/// A sum over pixels of expected squared errors a, and of the variance of (real - estimated) a.
-struct Tally {
-  double sum = 0.0, variance = 0.0;
-};
 
 /// What is added up over the whole picture.
 struct Totals {
   Tally relative, linear, display;
-  double tails = 0.0;           ///< relative squares in pixels with a tail
-  double squares = 0.0;         ///< of the relative squares: for effective_pixels
-  double samples_variance = 0.0, replicates_variance = 0.0;
+  double tails = 0.0;  ///< relative squares in pixels about which too few samples speak
 };
 
 /// First look: counts, the mean, and how far the noise of the channels goes together.
@@ -67,91 +64,85 @@ Survey survey(const Film& film) {
   return result;
 }
 
-/// Adds a pixel whose channels have the expected squared errors `a`. The real square scatters about
-/// its expectation by Var = 2 sum_cd rho^2 a_c a_d (normal errors), the estimate by `of_estimate`.
-void add(Tally& tally, const std::array<double, 3>& a, double correlation, double of_estimate) {
-  const double sum = a[0] + a[1] + a[2];
-  const double own = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-  const double cross = 2.0 * (a[0] * a[1] + a[0] * a[2] + a[1] * a[2]);
-  tally.sum += sum;
-  tally.variance += 2.0 * (own + correlation * correlation * cross) + of_estimate * sum * sum;
+void set(SquaredError& e, std::size_t c, double mean) {
+  e.mean[c] = mean;
+  e.spread[c] = std::numbers::sqrt2 * mean;
 }
 
-/// E of (d(x + s z) - d(x))^2 for z normal, by Gauss-Hermite quadrature with three nodes.
-double display_square(double x, double standard_error, double gain) {
+/// (d(x + s z) - d(x))^2 for z normal, by Gauss-Hermite quadrature with three nodes. Its spread is
+/// sqrt(2) times its mean where d is straight, more where it bends.
+void set_display(SquaredError& e, std::size_t c, double x, double standard_error, double gain) {
   const double step = std::sqrt(3.0) * standard_error * gain, at = gain * x;
   const double middle = display_value(at);
   const double up = display_value(at + step) - middle, down = display_value(at - step) - middle;
-  return (up * up + down * down) / 6.0;
+  const double u2 = up * up, d2 = down * down, mean = (u2 + d2) / 6.0;
+  e.mean[c] = mean;
+  e.spread[c] = std::sqrt(std::max(0.0, (u2 * u2 + d2 * d2) / 6.0 - mean * mean));
 }
 
 /// Rows [y0, y1) of the film with as many more around as windows reach.
-class Strip {
- public:
-  Strip(const Film& film, int y0, int y1)
-      : width_(film.width()),
-        first_(std::max(0, y0 - kWindowRadius)),
-        rows_(std::min(film.height(), y1 + kWindowRadius) - first_) {
-    const auto w = static_cast<std::size_t>(width_), pixels = w * static_cast<std::size_t>(rows_);
-    const std::size_t offset = static_cast<std::size_t>(first_) * w;
-    for (std::size_t i = 0; i < pixels; ++i) pixels_.push_back(pixel_statistics(film.pixel(offset + i)));
-    const auto windows = [&](auto&& value) {
-      std::vector<double> values(pixels);
-      for (std::size_t i = 0; i < pixels; ++i) values[i] = value(pixels_[i]);
-      return window_sums(values, width_, rows_, kWindowRadius);
-    };
-    count_ = windows([](const PixelStatistics&) { return 1.0; });
-    luminance_ = windows([](const PixelStatistics& p) { return p.luminance; });
-    square_ = windows([](const PixelStatistics& p) { return p.luminance * p.luminance; });
-    variance_ = windows([](const PixelStatistics& p) { return p.luminance_variance; });
-    for (std::size_t c = 0; c < 3; ++c) {
-      mean_[c] = windows([c](const PixelStatistics& p) { return p.mean[c]; });
+struct Strip {
+  std::vector<PixelStatistics> pixels;
+  int width, rows;
+  std::size_t begin, end;  ///< the pixels of [y0, y1)
+
+  Strip(const Film& film, int y0, int y1) : width(film.width()) {
+    const int first = std::max(0, y0 - kMargin), last = std::min(film.height(), y1 + kMargin);
+    rows = last - first;
+    begin = index(y0 - first);
+    end = index(y1 - first);
+    for (std::size_t i = index(first); i < index(last); ++i) {
+      pixels.push_back(pixel_statistics(film.pixel(i)));
     }
   }
-
-  [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y - first_) * static_cast<std::size_t>(width_) +
-           static_cast<std::size_t>(x);
+  [[nodiscard]] std::size_t index(int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
   }
-  [[nodiscard]] const PixelStatistics& pixel(std::size_t i) const { return pixels_[i]; }
-
-  /// The pixel's mean drawn towards that of its window by the share of noise in the scatter between
-  /// pixels (Lee 1980): where all scatter is noise the window speaks, at an edge the pixel itself.
-  /// 1/x^2 of a noisy x has a bias of 3 v/x^4; this takes most of it away.
-  [[nodiscard]] std::array<double, 3> smoothed(std::size_t i) const {
-    std::array<double, 3> result = pixels_[i].mean;
-    const double n = count_[i], mean = luminance_[i] / n, noise = variance_[i] / n;
-    if (n < 2.0 || noise <= 0.0) return result;
-    const double scatter = std::max(0.0, square_[i] / n - mean * mean) * n / (n - 1.0);
-    const double share = scatter > noise ? noise / scatter : 1.0;
-    for (std::size_t c = 0; c < 3; ++c) result[c] += share * (mean_[c][i] / n - result[c]);
-    return result;
-  }
-
- private:
-  int width_, first_, rows_;
-  std::vector<PixelStatistics> pixels_;
-  std::vector<double> count_, luminance_, square_, variance_;
-  std::array<std::vector<double>, 3> mean_;
+  [[nodiscard]] Windows windows(int radius) const { return {width, rows, radius}; }
 };
 
-void add_pixel(Totals& totals, const PixelStatistics& p, const std::array<double, 3>& smoothed,
-               const Survey& survey, double gain) {
-  std::array<double, 3> relative{}, display{};
-  const double floor = 0.01 * survey.mean * survey.mean;
-  for (std::size_t c = 0; c < 3; ++c) {
-    if (!(p.variance[c] > 0.0)) continue;
-    relative[c] = p.variance[c] / (smoothed[c] * smoothed[c] + floor);
-    display[c] = display_square(smoothed[c], std::sqrt(p.variance[c]), gain);
+/// relative[i] summed over the pixels whose 3 x 3 window owes its error to few samples. m samples of
+/// equal weight in a window give (sum a)^2 / sum (a largest_share)^2 = m if each is in another pixel.
+double in_tails(const Strip& strip, const SquaredErrors& relative) {
+  std::vector<double> sums(relative.size()), squares(relative.size());
+  for (std::size_t i = 0; i < relative.size(); ++i) {
+    sums[i] = relative[i].total();
+    const double of_one = sums[i] * strip.pixels[i].largest_share;
+    squares[i] = of_one * of_one;
   }
-  add(totals.relative, relative, survey.correlation, p.largest_share);
-  add(totals.linear, p.variance, survey.correlation, p.largest_share);
-  add(totals.display, display, survey.correlation, p.largest_share);
-  const double sum = relative[0] + relative[1] + relative[2];
-  totals.squares += sum * sum;
-  if (p.samples >= kSampleFloor && p.largest_share > kTailPixel) totals.tails += sum;
-  totals.samples_variance += p.luminance_variance;
-  totals.replicates_variance += p.replicate_variance;
+  const Windows windows = strip.windows(1);
+  const auto all = windows.sums(sums), ones = windows.sums(squares);
+  double result = 0.0;
+  for (std::size_t i = strip.begin; i < strip.end; ++i) {
+    const bool few = all[i] * all[i] < kFewEvents * ones[i];
+    if (few && strip.pixels[i].samples >= kSampleFloor) result += sums[i];
+  }
+  return result;
+}
+
+void add_strip(Totals& totals, const Strip& strip, const Survey& survey, double gain) {
+  const Windows windows = strip.windows(kWindowRadius);
+  const auto means = smoothed_means(strip.pixels, windows);
+  SquaredErrors errors(strip.pixels.size());
+  const auto tally = [&](Tally& into, auto set_error) {
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      errors[i] = {};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double variance = strip.pixels[i].variance[c];
+        if (variance > 0.0) set_error(errors[i], c, means[c][i], variance);
+      }
+    }
+    add(into, errors, strip.pixels, windows, survey.correlation, strip.begin, strip.end);
+  };
+  tally(totals.linear, [](SquaredError& e, std::size_t c, double, double variance) { set(e, c, variance); });
+  tally(totals.display, [gain](SquaredError& e, std::size_t c, double mean, double variance) {
+    set_display(e, c, mean, std::sqrt(variance), gain);
+  });
+  const double floor = 0.01 * survey.mean * survey.mean;
+  tally(totals.relative, [floor](SquaredError& e, std::size_t c, double mean, double variance) {
+    set(e, c, variance / (mean * mean + floor));
+  });
+  totals.tails += in_tails(strip, errors);  // the relative ones
 }
 
 /// 95 % interval of the mean square, log-normal: it cannot reach below 0.
@@ -193,28 +184,16 @@ ImageError image_error(const Film& film, double exposure_stops) {
   Totals totals;
   const double gain = std::exp2(exposure_stops);
   for (int y0 = 0; y0 < film.height(); y0 += kStripRows) {
-    const int y1 = std::min(y0 + kStripRows, film.height());
-    const Strip strip(film, y0, y1);
-    for (int y = y0; y < y1; ++y) {
-      for (int x = 0; x < film.width(); ++x) {
-        const std::size_t i = strip.index(x, y);
-        add_pixel(totals, strip.pixel(i), strip.smoothed(i), first, gain);
-      }
-    }
+    add_strip(totals, Strip(film, y0, std::min(y0 + kStripRows, film.height())), first, gain);
   }
-  const double values = 3.0 * static_cast<double>(result.pixels), sum = totals.relative.sum;
+  const double values = 3.0 * static_cast<double>(result.pixels);
   result.grade = first.least < kSampleFloor ? ErrorGrade::kRough : ErrorGrade::kMeasured;
-  result.tail_share = sum > 0.0 ? totals.tails / sum : 0.0;
-  result.heavy_tailed = result.tail_share > kTailImage;
+  result.heavy_tailed = totals.tails > kTailImage * totals.relative.sum;
   const double widening = result.heavy_tailed ? kTailWidening : 1.0;
   result.rel_mse = mean_square(totals.relative, values, widening);
   result.error = root(result.rel_mse);
   result.rmse = root(mean_square(totals.linear, values, widening));
   result.display_rmse = root(mean_square(totals.display, values, widening));
-  result.effective_pixels = totals.squares > 0.0 ? sum * sum / totals.squares : 0.0;
-  if (totals.samples_variance > 0.0) {
-    result.replicate_ratio = totals.replicates_variance / totals.samples_variance;
-  }
   return result;
 }
 

@@ -94,18 +94,5 @@ INSTANTIATE_TEST_SUITE_P(
                       Picture{"edge", edge, grey_exponential}),
     [](const auto& shown) { return std::string(shown.param.name); });
 
-// Samples that fill strata: the replicates see it, the samples of a pixel do not.
-TEST(Replicates, SeeWhatStrataGain) {
-  const auto film_of = [](bool strata) {
-    std::uint64_t i = 0;
-    return synthetic_film(16, 16, 512, 3, [&, strata](int, int, TestRandom& random) {
-      const auto stratum = static_cast<double>(i++ % 16);
-      return Rgbd(strata ? (stratum + random.uniform()) / 16.0 : random.uniform());
-    });
-  };
-  EXPECT_NEAR(image_error(film_of(false)).replicate_ratio, 1.0, 0.15);
-  EXPECT_LT(image_error(film_of(true)).replicate_ratio, 0.2);
-}
-
 }  // namespace
 }  // namespace raykiln::render

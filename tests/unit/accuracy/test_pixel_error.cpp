@@ -34,12 +34,10 @@ TEST(PixelError, IsUnknownBelowTwoSamples) {
   BlockResult two{.block = sample_block(1), .planes = make_block_planes(1)};
   add_sample(two.planes, 0, Rgbd(0.7), false);
   film.fold({2, 0, 3, 1}, two);
-  const std::vector<float> shown = luminance_errors(film);
-  EXPECT_TRUE(std::isnan(shown[0]));
-  EXPECT_TRUE(std::isnan(shown[1]));
-  EXPECT_NEAR(shown[2], 0.1, 1e-6);  // |0.7 - 0.5| / 2
   const PixelErrors errors = pixel_errors(film);
   EXPECT_TRUE(std::isnan(errors.standard_error[0]));
+  EXPECT_TRUE(std::isnan(errors.standard_error[3]));
+  EXPECT_NEAR(errors.standard_error[6], 0.1, 1e-6);  // |0.7 - 0.5| / 2
   EXPECT_TRUE(std::isfinite(errors.mean[0]));
 }
 
@@ -49,9 +47,9 @@ TEST(PixelError, APixelWithoutAnEventIsNotCertain) {
     const bool dark = x == 2 && y == 2;
     return Rgbd(!dark && random.uniform() < 0.1 ? 10.0 : 0.0);
   });
-  const std::vector<float> errors = luminance_errors(film);
-  EXPECT_GT(errors[12], 0.8F * std::sqrt(0.1F * 0.9F * 100.0F / 64.0F) * std::sqrt(8.0F / 9.0F) * 0.8F);
-  for (const float e : errors) EXPECT_GT(e, 0.0F);
+  const std::vector<double> errors = pixel_errors(film).standard_error;
+  EXPECT_GT(errors[36], 0.8 * std::sqrt(0.1 * 0.9 * 100.0 / 64.0) * std::sqrt(8.0 / 9.0) * 0.8);
+  for (const double e : errors) EXPECT_GT(e, 0.0);
 }
 
 }  // namespace

@@ -34,10 +34,9 @@ struct ImageError {
   Figure rmse;          ///< root of the mean of (x - r)^2; radiance
   Figure display_rmse;  ///< the same of display values in [0, 1] at the exposure that was given
 
-  /// More than a fifth of rel_mse comes from pixels whose variance is that of one or two samples: the
-  /// figures are optimistic. Intervals are three times as wide then (in the logarithm).
+  /// More than two fifths of rel_mse come from places where few samples make up the variance: it may
+  /// be far larger than they show. Intervals are three times as wide then (in the logarithm).
   bool heavy_tailed = false;
-  double tail_share = 0.0;  ///< that part of rel_mse
   /// No two samples of any pixel differ. True of a picture without noise, and of one in which no
   /// sample has found the light: samples alone cannot tell.
   bool no_variance = false;
@@ -45,15 +44,11 @@ struct ImageError {
   std::uint64_t pixels = 0, unsampled_pixels = 0;  ///< unsampled: no sample at all
   std::uint64_t least_samples = 0;                 ///< of the poorest pixel
   double mean_samples = 0.0;
-  double mean = 0.0;              ///< M, estimated
-  double effective_pixels = 0.0;  ///< pixels that rel_mse is spread over: (sum q)^2 / sum q^2
-  /// Variance of luminance from the replicates over that from the samples: 1 up to noise where samples
-  /// are independent, less where a sampler stratifies. 0: not known.
-  double replicate_ratio = 0.0;
+  double mean = 0.0;  ///< M, estimated
 };
 
 /// Noise alone: what samples cannot cure (truncated paths, approximations, light that no sample has
-/// found) is not in it. A pure function of the film. About 100 bytes times width times 20 rows of
+/// found) is not in it. A pure function of the film. About 250 bytes times width times 24 rows of
 /// working memory. `exposure_stops` is for display_rmse.
 [[nodiscard]] ImageError image_error(const Film& film, double exposure_stops = 0.0);
 

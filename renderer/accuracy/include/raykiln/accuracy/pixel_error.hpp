@@ -14,12 +14,9 @@ struct PixelErrors {
   std::vector<double> standard_error;  ///< of the mean, radiance; NaN (unknown) below 2 samples
 };
 
-/// The standard error is that of the 3 x 3 pixels around (root of their mean variance): a pixel that no
-/// sample has brightened is not certain for that. Only a pixel whose own variance is larger by more
-/// than two standard errors keeps its own.
+/// Each variance is drawn to the mean of the 3 x 3 pixels around by the share that its own scatter has
+/// in the differences between them: a pixel that no sample has brightened is not certain for that, and
+/// at an edge a pixel keeps most of its own.
 [[nodiscard]] PixelErrors pixel_errors(const Film& film);
-
-/// Standard error of luminance, one float a pixel, as above: what is shown in false colour.
-[[nodiscard]] std::vector<float> luminance_errors(const Film& film);
 
 }  // namespace raykiln::render
