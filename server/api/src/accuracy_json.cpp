@@ -48,7 +48,7 @@ Json forecasts_value(const std::vector<Forecast>& list) {
 }  // namespace
 
 std::string accuracy_json(const JobSnapshot& job) {
-  const bool tails = job.accuracy && job.accuracy->heavy_tailed;
+  const Basis basis = job.accuracy ? basis_of(*job.accuracy) : Basis::kRough;
   const double now = job.statistics.render_seconds;
   const double error = job.curve.empty() ? 0.0 : job.curve.back().error.value;
   const auto& target = job.request.stop.error;
@@ -59,10 +59,10 @@ std::string accuracy_json(const JobSnapshot& job) {
              {"revision", job.revision},
              {"points", points_value(job.curve)},
              {"slope", std::move(slope)},
-             {"seconds_to_halve_error", left_value(seconds_to_error(job.curve, error / 2.0, tails), now)},
+             {"seconds_to_halve_error", left_value(seconds_to_error(job.curve, error / 2.0, basis), now)},
              {"target", target ? Json(*target) : Json(nullptr)},
              {"seconds_to_target",
-              target ? left_value(seconds_to_error(job.curve, *target, tails), now) : Json(nullptr)},
+              target ? left_value(seconds_to_error(job.curve, *target, basis), now) : Json(nullptr)},
              {"forecasts", forecasts_value(job.forecasts)},
              {"tile_samples", job.tile_samples.empty() ? Json(nullptr) : Json(job.tile_samples)}};
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);

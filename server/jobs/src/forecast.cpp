@@ -56,8 +56,13 @@ std::optional<SlopeFit> fit_slope(const std::vector<CurvePoint>& curve) {
   return SlopeFit{slope, std::max(kLeastSlopeError, std::sqrt(residual / sxx)), static_cast<std::size_t>(n)};
 }
 
+Basis basis_of(const PictureError& error) {
+  if (error.heavy_tailed) return Basis::kHeavyTailed;
+  return error.grade == "measured" ? Basis::kMeasured : Basis::kRough;
+}
+
 std::optional<TimeRange> seconds_to_error(const std::vector<CurvePoint>& curve, double error,
-                                          bool heavy_tailed) {
+                                          Basis basis) {
   if (curve.empty() || !usable(curve.back()) || !(error > 0.0)) return std::nullopt;
   const CurvePoint& now = curve.back();
   const SlopeFit fit = weighed_slope(curve);
@@ -66,14 +71,16 @@ std::optional<TimeRange> seconds_to_error(const std::vector<CurvePoint>& curve, 
   const double of_error = std::log(now.error.high / now.error.low) / (2.0 * kNormal95) / beta;
   const double of_slope = way * fit.standard_error / (beta * beta);
   const double of_speed = kSpeedSpread * std::min(1.0, std::abs(way));
-  const double spread = kNormal90 * (heavy_tailed ? kTailWidening : 1.0) *
-                        std::sqrt(2.0 * of_error * of_error + of_slope * of_slope + of_speed * of_speed);
+  const double wide = basis == Basis::kMeasured ? 1.0 : kTailWidening;
+  const double of_estimates = of_error * (basis == Basis::kRough ? wide : 1.0);
+  const double spread = kNormal90 * std::sqrt(2.0 * of_estimates * of_estimates +
+                                              wide * wide * (of_slope * of_slope + of_speed * of_speed));
   const double value = now.render_seconds * std::exp(way / beta);
   return TimeRange{value, value * std::exp(-spread), value * std::exp(spread)};
 }
 
 std::vector<Forecast> update_forecasts(std::vector<Forecast>& forecasts,
-                                       const std::vector<CurvePoint>& curve, bool heavy_tailed) {
+                                       const std::vector<CurvePoint>& curve, Basis basis) {
   std::vector<Forecast> scored;
   if (curve.empty() || !usable(curve.back())) return scored;
   const CurvePoint& now = curve.back();
@@ -92,9 +99,9 @@ std::vector<Forecast> update_forecasts(std::vector<Forecast>& forecasts,
     scored.push_back(forecast);
   }
   const bool due = forecasts.empty() || now.render_seconds >= 2.0 * forecasts.back().made_at;
-  if (!due || forecasts.size() >= kMostForecasts) return scored;
+  if (!due || now.samples < kForecastFloor || forecasts.size() >= kMostForecasts) return scored;
   const double half = now.error.value / 2.0;
-  if (const auto range = seconds_to_error(curve, half, heavy_tailed)) {
+  if (const auto range = seconds_to_error(curve, half, basis)) {
     forecasts.push_back({.made_at = now.render_seconds, .error = half, .seconds = *range});
   }
   return scored;

@@ -95,7 +95,7 @@ void Scheduler::Core::note_error(LiveJob& job, PictureError error) {
                         .samples = error.mean_samples,
                         .rays = s.statistics.rays(),
                         .error = error.error});
-    for (const Forecast& scored : update_forecasts(s.forecasts, s.curve, error.heavy_tailed)) {
+    for (const Forecast& scored : update_forecasts(s.forecasts, s.curve, basis_of(error))) {
       parts_.metrics
           .counter("raykiln_forecasts_total", "forecasts of the time to half an error, by whether they held",
                    {{"hit", scored.hit() ? "true" : "false"}})

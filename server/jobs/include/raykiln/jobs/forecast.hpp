@@ -26,11 +26,19 @@ struct TimeRange {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
+/// What the points of a curve are worth to a forecast.
+enum class Basis {
+  kMeasured,
+  kRough,        ///< too few samples to tell whether tails are heavy: ranges three times as wide
+  kHeavyTailed,  ///< three times as wide; the intervals of the points are so already
+};
+[[nodiscard]] Basis basis_of(const PictureError& error);
+
 /// Render seconds, from the beginning, at which `error` will be (or was) reached; nothing without a
 /// point. The slope is the fitted one weighed with -1/2 +- 0.03; errors, slope and a tenth for the speed of
-/// the machine are added in squares. Three times as wide (in the logarithm) for heavy tails.
+/// the machine are added in squares. Widths are meant in the logarithm.
 [[nodiscard]] std::optional<TimeRange> seconds_to_error(const std::vector<CurvePoint>& curve, double error,
-                                                        bool heavy_tailed);
+                                                        Basis basis);
 
 /// What was said at `made_at` about the time to reach an error.
 struct Forecast {
@@ -41,10 +49,13 @@ struct Forecast {
   [[nodiscard]] bool hit() const { return actual && seconds.low <= *actual && *actual <= seconds.high; }
 };
 inline constexpr std::size_t kMostForecasts = 32;
+/// Samples a pixel from which on forecasts are made: before, what makes up the error may not have come once.
+inline constexpr double kForecastFloor = 16.0;
 
-/// After a new point of the curve: makes a forecast if the last one is half the time ago, and scores those
+/// After a new point of the curve: makes a forecast if the last one is half the time ago and the floor is
+/// reached, and scores those
 /// whose error has been reached (between the points, on the line through them). Returns those scored now.
 std::vector<Forecast> update_forecasts(std::vector<Forecast>& forecasts,
-                                       const std::vector<CurvePoint>& curve, bool heavy_tailed);
+                                       const std::vector<CurvePoint>& curve, Basis basis);
 
 }  // namespace raykiln::server
