@@ -34,12 +34,7 @@ GROUPS = "KVSDLMFXT"
 
 # Entry, what of it, promise.
 DUE = [
-    ("K10", "last metric", "the predicted time of a scene that no split helps is within a factor 2"),
-    ("L06", "notice", "an emitter that no path has hit is announced, with what may be missing"),
-    ("L08", "forecast", "the time that many lights take is predicted before the render"),
     ("M08", "second line", "slopes of stratified and scrambled low-discrepancy samples"),
-    ("R7", "coverage", "share of truths inside the shown 95 % interval"),
-    ("T02", "report", "the reported truncation bias agrees within its own interval"),
 ]
 
 

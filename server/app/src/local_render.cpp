@@ -236,7 +236,8 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   auto tree = render::build_scene_tree(*loaded->scene, {}, *runner);
   const double build_seconds = since() - build_begun;
   const render::BuildStats tree_stats = render::build_stats(*tree);
-  LocalJob job(render::prepare(loaded->scene, std::move(tree)), *settings, request, pool);
+  const auto prepared = render::prepare(loaded->scene, std::move(tree));
+  LocalJob job(prepared, *settings, request, pool);
   const double prepare_seconds = since();
   if (auto status = job.run(progress); !status) return status.error();
 
@@ -263,6 +264,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
                                     "--effects"});
   }
   warn_of_picture(*settings, *loaded->scene, tree_stats, picture.job.warnings);
+  warn_of_missing_light(*settings, *prepared, picture.job.warnings);
   return picture;
 }
 

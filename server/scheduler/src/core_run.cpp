@@ -125,6 +125,7 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   job.settings = *settings;
   warn_of_light_model(*settings, *scene.scene, s.warnings);
   warn_of_picture(*settings, *scene.scene, scene.tree.stats, s.warnings);
+  if (scene.prepared) warn_of_missing_light(*settings, *scene.prepared, s.warnings);
   s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
   job.scene = std::move(scene);
   job.blocks = render::blocks_for(s.request.stop.samples);

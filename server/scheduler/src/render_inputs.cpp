@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "raykiln/render/missing_light.hpp"
+
 namespace raykiln::server {
 namespace {
 
@@ -92,6 +94,14 @@ void warn_of_picture(const render::RenderSettings& settings, const render::Scene
                      const render::BuildStats& tree, std::vector<JobWarning>& warnings) {
   for (const auto& found : render::render_notices(settings, scene, tree)) {
     add_once({found.code, found.message, ""}, warnings);
+  }
+}
+
+void warn_of_missing_light(const render::RenderSettings& settings, const render::PreparedScene& scene,
+                           std::vector<JobWarning>& warnings) {
+  for (const auto& found : render::missing_light_notices(scene, settings)) {
+    add_once({found.code, found.message, found.code == "unseen_light" ? "/emitter_sampling" : "/max_depth"},
+             warnings);
   }
 }
 

@@ -29,4 +29,9 @@ void warn_of_light_model(const render::RenderSettings& settings, const render::S
 void warn_of_picture(const render::RenderSettings& settings, const render::Scene& scene,
                      const render::BuildStats& tree, std::vector<JobWarning>& warnings);
 
+/// Adds light that no number of samples brings, with its size ("truncated_paths" at "/max_depth",
+/// "unseen_light" at "/emitter_sampling"), from a pilot of some ten milliseconds; none for default settings.
+void warn_of_missing_light(const render::RenderSettings& settings, const render::PreparedScene& scene,
+                           std::vector<JobWarning>& warnings);
+
 }  // namespace raykiln::server

@@ -1,0 +1,142 @@
+#include "raykiln/render/missing_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "tracing.hpp"
+
+namespace raykiln::render {
+namespace {
+
+constexpr double kMostProbes = 1024.0, kMostRays = 1e5;
+constexpr std::uint64_t kLeastProbes = 16;
+constexpr double kWorthSaying = 1e-3;  ///< of the picture's light
+constexpr double kCertain = 3.0;       ///< standard errors
+constexpr double kRuleOfThree = 3.0;   ///< 0 events in n trials bound the rate by 3/n at 95 %
+
+/// Sample 0, 1, ... of pixels spread evenly over the picture.
+std::vector<PathStart> spread(const RenderSettings& settings, std::uint64_t probes) {
+  const auto width = static_cast<std::uint64_t>(settings.width);
+  const std::uint64_t pixels = width * static_cast<std::uint64_t>(settings.height);
+  std::vector<PathStart> starts;
+  for (std::uint64_t i = 0; i < probes; ++i) {
+    const std::uint64_t pixel =
+        probes < pixels ? static_cast<std::uint64_t>(static_cast<double>(i) * static_cast<double>(pixels) /
+                                                     static_cast<double>(probes))
+                        : i % pixels;
+    starts.push_back({static_cast<int>(pixel % width), static_cast<int>(pixel / width), i / pixels});
+  }
+  return starts;
+}
+
+std::vector<double> means_of_channels(const PreparedScene& scene, const RenderSettings& settings,
+                                      const std::vector<PathStart>& starts) {
+  const CameraRays camera = camera_rays(scene, settings);
+  PathTracer tracer({scene.scene(), scene.tree(), scene.emitters()}, camera, path_settings(scene, settings));
+  std::vector<PathResult> paths(starts.size());
+  RenderStats stats;
+  static_cast<void>(tracer.trace(starts, paths, stats, {}));  // never stopped: few
+  std::vector<double> means;
+  for (const PathResult& path : paths) {
+    const Rgbd radiance = path.radiance();
+    const double mean = (radiance.x + radiance.y + radiance.z) / 3.0;
+    means.push_back(std::isfinite(mean) ? mean : 0.0);  // dropped from pictures too
+  }
+  return means;
+}
+
+MissingLight compare(const PreparedScene& scene, const RenderSettings& settings,
+                     const RenderSettings& whole, std::uint64_t probes) {
+  MissingLight result{.probes = probes};
+  if (probes < 2) return {};
+  const std::vector<PathStart> starts = spread(settings, probes);
+  const auto lacking = means_of_channels(scene, settings, starts), full = means_of_channels(scene, whole, starts);
+  const auto n = static_cast<double>(probes);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    result.differing += full[i] != lacking[i] ? 1U : 0U;
+    result.mean += full[i] / n;
+    result.missing += (full[i] - lacking[i]) / n;
+  }
+  double squares = 0.0;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const double deviation = full[i] - lacking[i] - result.missing;
+    squares += deviation * deviation;
+  }
+  result.standard_error = std::sqrt(squares / (n * (n - 1.0)));
+  return result;
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
+  return text;
+}
+
+double brightest_emitter(const Scene& scene) {
+  float largest = 0.0F;
+  for (const std::uint32_t id : scene.mesh.material_ids) {
+    const Rgb& e = scene.materials[id].emission;
+    largest = std::max({largest, e.x, e.y, e.z});
+  }
+  return static_cast<double>(largest);
+}
+
+}  // namespace
+
+std::uint64_t affordable_probes(const PreparedScene& scene, const RenderSettings& settings) {
+  const double lights = 2.0 + static_cast<double>(scene.emitters().point_lights().size());
+  const double of_pair = 2.0 * lights * std::min(path_limit(settings) + 1, 32);
+  const auto probes = static_cast<std::uint64_t>(std::min(kMostProbes, kMostRays / of_pair));
+  return probes < kLeastProbes ? 0 : probes;
+}
+
+MissingLight cut_off_light(const PreparedScene& scene, const RenderSettings& settings,
+                           std::uint64_t probes) {
+  const bool unlimited = settings.light_model.roulette && settings.branches == 1 && path_limit(settings) >= kRouletteLimit;
+  if (unlimited) return {};
+  RenderSettings cut = settings;
+  cut.max_depth = path_limit(settings);
+  cut.branches = 1;  // the same mean as many
+  RenderSettings whole = cut;
+  whole.max_depth = std::max(*cut.max_depth, kRouletteLimit);
+  whole.light_model.roulette = true;
+  return compare(scene, cut, whole, probes);
+}
+
+MissingLight unseen_light(const PreparedScene& scene, const RenderSettings& settings,
+                          std::uint64_t probes) {
+  if (settings.emitter_sampling || !scene.emitters().has_triangles()) return {};
+  RenderSettings alone = settings;
+  alone.branches = 1;
+  RenderSettings whole = alone;
+  whole.emitter_sampling = true;
+  return compare(scene, alone, whole, probes);
+}
+
+std::vector<RenderNotice> missing_light_notices(const PreparedScene& scene,
+                                                const RenderSettings& settings) {
+  std::vector<RenderNotice> notices;
+  const std::uint64_t probes = affordable_probes(scene, settings);
+  const MissingLight cut = cut_off_light(scene, settings, probes);
+  if (cut.differing > 0 && cut.share() + 2.0 * cut.share_error() >= kWorthSaying) {
+    notices.push_back({"truncated_paths", "paths end after " + std::to_string(path_limit(settings)) +
+                                              " reflections: " + percent(cut.share()) + " +- " +
+                                              percent(cut.share_error()) +
+                                              " of the picture's light is missing, however many samples there are"});
+  }
+  const MissingLight unseen = unseen_light(scene, settings, probes);
+  if (unseen.probes > 0 && unseen.missing > kCertain * unseen.standard_error) {
+    char most[32];
+    std::snprintf(most, sizeof most, "%.3g",
+                  kRuleOfThree * brightest_emitter(scene.scene()) / static_cast<double>(unseen.probes));
+    notices.push_back({"unseen_light", "paths seldom find the emitters by themselves: " + std::to_string(probes) +
+                                           " of them miss " + percent(unseen.share()) + " +- " +
+                                           percent(unseen.share_error()) +
+                                           " of the picture's light, where no noise is seen; up to " + most +
+                                           " of radiance (3/n of the brightest emitter) may escape as many again"});
+  }
+  return notices;
+}
+
+}  // namespace raykiln::render
