@@ -47,7 +47,7 @@ def test_help_names_the_commands_and_exit_codes():
     shown = raykiln("--help")
     assert shown.returncode == 0
     for word in ("render", "submit", "watch", "fetch", "cancel", "scenes", "jobs", "health",
-                 "selftest", "lint", "effects", "replay", "compare"):
+                 "selftest", "lint", "effects", "replay", "compare", "accuracy", "extend", "quote"):
         assert word in shown.stdout, word
     assert "exit" in shown.stdout.lower(), "the exit codes belong to the help"
 
@@ -319,3 +319,17 @@ def test_accuracy_measures_every_knob_and_judges_its_own_reference(folder, tmp_p
 def test_accuracy_refuses_what_would_take_for_ever(folder):
     assert raykiln("accuracy", folder, "--size", "1000x1000").returncode == 2
     assert raykiln("accuracy", folder / "none.obj").returncode == 3
+
+
+def test_a_quote_is_bought_by_extending_it(api, to, folder, tmp_path):
+    done = raykiln("quote", folder, *to, "--size", "16x12", "--pilot-seconds", 0.3)
+    assert done.returncode == 0, done.stderr
+    assert "error 1 %" in done.stdout and "raykiln extend" in done.stdout
+    quote = json.loads(raykiln("quote", folder, *to, "--size", "16x12", "--pilot-seconds", 0.2, "--json").stdout)
+    more = int(quote["pilot"]["samples"]) + 100
+    picture, whole = tmp_path / "more.png", tmp_path / "whole.png"
+    assert raykiln("extend", quote["id"], *to, "--samples", more, "-o", picture).returncode == 0
+    assert raykiln("render", folder, "--size", "16x12", "--samples", more, "-o", whole).returncode == 0
+    assert picture.read_bytes() == whole.read_bytes()
+    assert raykiln("extend", quote["id"], *to).returncode == 2
+    assert raykiln("extend", "j_none", *to, "--samples", 4).returncode == 8

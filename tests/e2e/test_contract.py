@@ -152,6 +152,17 @@ def replay_jobs(replay, scene) -> str:
     replay("get", "/v1/jobs/{job}/accuracy", 200, {"job": job})
     replay("get", "/v1/jobs/{job}/accuracy", 404, {"job": "j_none"})
     replay("post", "/v1/jobs/{job}/cancel", 409, {"job": job})
+    more = replay("post", "/v1/jobs/{job}/extend", 202, {"job": job}, json={"stop": {"samples": 99}}).json()["id"]
+    assert replay.api.wait(more)["continues"]["job"] == job
+    replay("get", "/v1/jobs/{job}", 200, {"job": more})
+    replay("post", "/v1/jobs/{job}/extend", 422, {"job": job}, json={"stop": {"samples": 1}})
+    replay("post", "/v1/jobs/{job}/extend", 404, {"job": "j_none"}, json={"stop": {"samples": 9}})
+    asked = {key: value for key, value in request.items() if key != "stop"}
+    quote = replay("post", "/v1/quotes", 202, json={**asked, "pilot_seconds": 0.1}).json()["id"]
+    replay.api.wait(quote)
+    replay("get", "/v1/quotes/{job}", 200, {"job": quote})
+    replay("get", "/v1/quotes/{job}", 404, {"job": "j_none"})
+    replay("post", "/v1/quotes", 422, json=request)
     endless = replay(*create, 202, json={**request, "width": 512, "height": 512,
                                          "stop": {"samples": 1048576}}).json()["id"]
     replay("post", "/v1/jobs/{job}/cancel", 202, {"job": endless})

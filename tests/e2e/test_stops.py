@@ -49,3 +49,40 @@ def test_stops_that_cannot_be(api, samples):
     assert pointers({"tile_samples": [1, 2]}) == ["/stop/tile_samples"]
     assert pointers({"tile_samples": "all"}) == ["/stop/tile_samples"]
     assert pointers({"tile_samples": [1] * 12, "error": 0.1}) == ["/stop/tile_samples"]
+
+
+def extend(api, job, body, expect=(202,), **options):
+    return api.post(f"/v1/jobs/{job['id']}/extend", body, expect, **options)
+
+
+def test_a_completed_job_goes_on_to_the_same_picture(api, samples):
+    early = ended(api, samples["box"], {"samples": 20})
+    answer = extend(api, early, {"stop": {"samples": 50}})
+    late = api.wait(answer.json()["id"])
+    assert answer.headers["Location"] == f"/v1/jobs/{late['id']}"
+    assert late["state"] == "completed" and late["continues"] == {"job": early["id"], "samples": 16}
+    assert early["continues"] is None
+    whole = ended(api, samples["box"], {"samples": 50})
+    pictures = [api.get(f"/v1/jobs/{job['id']}/image?format=png").content for job in (late, whole)]
+    assert pictures[0] == pictures[1]
+    wrong = problem(extend(api, late, {"stop": {"samples": 50}}, expect=(422,)), 422, "invalid_request")
+    assert [error["pointer"] for error in wrong["errors"]] == ["/stop/samples"]
+    assert problem(extend(api, late, {"stop": {}}, expect=(422,)), 422, "invalid_request")["errors"]
+    assert problem(extend(api, late, {"stop": {"samples": 99}, "width": 3}, expect=(422,)), 422, "invalid_request")
+
+
+def test_a_quote_has_prices_that_hold_and_its_samples_are_kept(api, samples):
+    body = {"scene": samples["box"], **TINY, "pilot_seconds": 0.4}
+    answer = api.post("/v1/quotes", body)
+    assert answer.headers["Location"] == f"/v1/quotes/{answer.json()['id']}"
+    pilot = api.wait(answer.json()["id"])
+    quote = api.get(answer.headers["Location"]).json()
+    assert quote["state"] == "completed" and quote["pilot"]["samples"] > 64
+    prices = quote["prices"]
+    assert [price["error"] for price in prices] == [0.1, 0.05, 0.02, 0.01, 0.005]
+    assert all(p["seconds"]["low"] <= p["seconds"]["value"] <= p["seconds"]["high"] for p in prices)
+    assert all(p["seconds_left"]["value"] == 0 for p in prices if p["reached"] and p["seconds"]["value"] < quote["pilot"]["seconds"])
+    bought = api.wait(extend(api, pilot, {"stop": {"error": max(0.02, quote["error"]["value"] / 1.5)}}).json()["id"], timeout=120)
+    assert bought["done_by"] == "error" and bought["continues"]["samples"] > 64
+    assert problem(api.post("/v1/quotes", {**body, "stop": {"samples": 3}}, (422,)), 422, "invalid_request")
+    assert problem(api.post("/v1/quotes", {**body, "pilot_seconds": 1e4}, (422,)), 422, "invalid_request")

@@ -79,6 +79,15 @@ export async function cancel_job(id: string): Promise<Job> {
   return as_job(await json(`${job_path(id)}/cancel`, { method: "POST" }));
 }
 
+/** More samples for a completed job, until its error is so small: a new job. */
+export async function extend_job(id: string, error: number): Promise<Job> {
+  return as_job(
+    await json(`${job_path(id)}/extend`, {
+      method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ stop: { error } }),
+    }),
+  );
+}
+
 function as_job(value: unknown): Job {
   if (is_job(value)) return value;
   throw new Problem(200, "bad_answer", "The server's answer is not a job", "");

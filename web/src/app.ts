@@ -177,6 +177,13 @@ export class App implements Commands {
     api.cancel_job(id).then((job) => this.job_news(job), (error: unknown) => this.command_failed(error));
   }
 
+  extend(id: string, error: number): void {
+    api.extend_job(id, error).then((job) => {
+      this.job_news(job);
+      this.navigate(route_path({ page: "job", id: job.id }));
+    }, (failure: unknown) => this.command_failed(failure));
+  }
+
   private command_failed(error: unknown): void {
     if (!(error instanceof Problem)) throw error;
     this.dispatch({ type: "command_failed", problem: error });

@@ -82,6 +82,7 @@ export interface JobAccuracy {
   seconds_to_halve_error: SecondsRange | null;
   target: number | null;
   seconds_to_target: SecondsRange | null;
+  prices: { error: number; reached: boolean; seconds: SecondsRange | null; seconds_left: SecondsRange | null }[];
   forecasts: { hit: boolean | null }[];
   tile_samples: number[] | null;
 }
@@ -122,6 +123,8 @@ export interface Job {
   /** Absent from servers that do not judge errors. */
   accuracy?: Accuracy | null;
   done_by?: "samples" | "seconds" | "error" | null;
+  /** The completed job whose samples this one has taken over. */
+  continues?: { job: string; samples: number } | null;
   warnings: Warning[];
   error: ProblemView | null;
   image: { revision: number; png: string; exr: string } | null;

@@ -5,7 +5,7 @@ import { kPlot, log_axis, plot_of } from "../src/plot";
 const curve = (points: [number, number][], changes: Partial<JobAccuracy> = {}): JobAccuracy => ({
   points: points.map(([render_seconds, value]) =>
     ({ render_seconds, samples: 1, error: { value, low: 0.9 * value, high: 1.1 * value } })),
-  slope: null, seconds_to_halve_error: null, target: null, seconds_to_target: null, forecasts: [], tile_samples: null,
+  slope: null, seconds_to_halve_error: null, target: null, seconds_to_target: null, prices: [], forecasts: [], tile_samples: null,
   ...changes,
 });
 const numbers = (path: string): number[] => (path.match(/-?\d+(\.\d+)?/g) ?? []).map(Number);

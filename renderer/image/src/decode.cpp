@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "png_chunks.hpp"
 #include "raykiln/image/display.hpp"
 
 namespace raykiln::render {
@@ -120,6 +121,8 @@ bool begins_with(std::span<const std::uint8_t> bytes, const std::array<std::uint
 std::variant<DecodedImage, DecodeError> decode_image(std::span<const std::uint8_t> bytes) {
   const bool exr = begins_with(bytes, kExr), png = begins_with(bytes, kPng);
   if (!exr && !png) return DecodeError{"neither an EXR nor a PNG file"};
+  // The library leaks when it meets the end of a PNG before its time.
+  if (png && !png_is_whole(bytes)) return DecodeError{"the PNG file is cut off or damaged"};
   auto decoded = read(exr ? "exr" : "png", bytes);
   if (auto* image = std::get_if<DecodedImage>(&decoded)) image->display = png;
   return decoded;

@@ -45,10 +45,48 @@ Json forecasts_value(const std::vector<Forecast>& list) {
   return forecasts;
 }
 
+Basis basis_of(const JobSnapshot& job) {
+  return job.accuracy ? server::basis_of(*job.accuracy) : Basis::kRough;
+}
+
+/// Errors that have a price.
+constexpr double kPriced[] = {0.1, 0.05, 0.02, 0.01, 0.005};
+
+/// Nothing of the error is known below the floor of samples.
+Json prices_value(const JobSnapshot& job) {
+  const Basis basis = basis_of(job);
+  const double now = job.statistics.render_seconds;
+  const double reached = job.curve.empty() ? 0.0 : job.curve.back().error.value;
+  Json prices = Json::array();
+  for (const double error : kPriced) {
+    const auto total = seconds_to_error(job.curve, error, basis);
+    prices.push_back({{"error", error},
+                      {"reached", !job.curve.empty() && reached <= error},
+                      {"seconds", total ? range_value(*total) : Json(nullptr)},
+                      {"seconds_left", left_value(total, now)}});
+  }
+  return prices;
+}
+
+std::string dump(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 }  // namespace
 
+std::string quote_json(const JobSnapshot& job) {
+  const auto& a = job.accuracy;
+  return dump({{"id", job.id},
+               {"job", "/v1/jobs/" + job.id},
+               {"state", name(job.state)},
+               {"pilot", {{"seconds", job.statistics.render_seconds},
+                          {"worker_seconds", job.statistics.worker_seconds},
+                          {"samples", job.progress.samples_per_pixel}}},
+               {"error", a && a->known() ? figure_value(a->error) : Json(nullptr)},
+               {"heavy_tailed", a ? Json(a->heavy_tailed) : Json(nullptr)},
+               {"prices", prices_value(job)}});
+}
+
 std::string accuracy_json(const JobSnapshot& job) {
-  const Basis basis = job.accuracy ? basis_of(*job.accuracy) : Basis::kRough;
+  const Basis basis = basis_of(job);
   const double now = job.statistics.render_seconds;
   const double error = job.curve.empty() ? 0.0 : job.curve.back().error.value;
   const auto& target = job.request.stop.error;
@@ -63,9 +101,10 @@ std::string accuracy_json(const JobSnapshot& job) {
              {"target", target ? Json(*target) : Json(nullptr)},
              {"seconds_to_target",
               target ? left_value(seconds_to_error(job.curve, *target, basis), now) : Json(nullptr)},
+             {"prices", prices_value(job)},
              {"forecasts", forecasts_value(job.forecasts)},
              {"tile_samples", job.tile_samples.empty() ? Json(nullptr) : Json(job.tile_samples)}};
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return dump(value);
 }
 
 }  // namespace raykiln::server

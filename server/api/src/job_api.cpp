@@ -32,23 +32,68 @@ std::optional<Problem> check_media_type(const Request& request) {
   return Problem{415, "unsupported_media_type", "Content-Type must be application/json", "Content-Type"};
 }
 
+/// A body of JSON for something new; its key, if it has one.
+std::optional<Problem> check_creation(const Request& request) {
+  if (auto problem = check_query(request, {})) return problem;
+  if (auto problem = check_media_type(request)) return problem;
+  return check_idempotency_key(request);
+}
+
+std::string idempotency_key(const Request& request) {
+  const auto* key = find_value(request.headers, "idempotency-key");
+  return key == nullptr ? std::string() : *key;
+}
+
 }  // namespace
 
 Answer Api::create_job(const Request& request) {
-  if (auto problem = check_query(request, {})) return to_response(*problem);
-  if (auto problem = check_media_type(request)) return to_response(*problem);
-  if (auto problem = check_idempotency_key(request)) return to_response(*problem);
+  if (auto problem = check_creation(request)) return to_response(*problem);
   auto parsed = parse_job_request(request.body, config_.jobs);
   if (const auto* problem = std::get_if<Problem>(&parsed)) return to_response(*problem);
-  SubmitJob submission{std::get<JobRequest>(std::move(parsed)), {}};
-  if (const auto* key = find_value(request.headers, "idempotency-key")) {
-    submission.idempotency_key = *key;
-  }
+  SubmitJob submission{std::get<JobRequest>(std::move(parsed)), idempotency_key(request)};
   const auto result = await<SubmittedJob>([&](auto reply) {
     parts_.scheduler.submit(std::move(submission), std::move(reply));
   });
   if (!result) return to_response(problem_of(result.error()));
   return job_answer(202, result->job);
+}
+
+Answer Api::extend_job(const Request& request) {
+  if (auto problem = check_job_id(request)) return to_response(*problem);
+  if (auto problem = check_creation(request)) return to_response(*problem);
+  auto parsed = parse_extension(request.body, config_.jobs);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) return to_response(*problem);
+  auto& wanted = std::get<Extension>(parsed);
+  ExtendJob extension{path_parameter(request, "job"), std::move(wanted.stop), wanted.priority, idempotency_key(request)};
+  const auto result = await<SubmittedJob>([&](auto reply) {
+    parts_.scheduler.extend(std::move(extension), std::move(reply));
+  });
+  if (!result) return to_response(problem_of(result.error()));
+  return job_answer(202, result->job);
+}
+
+Answer Api::create_quote(const Request& request) {
+  if (auto problem = check_creation(request)) return to_response(*problem);
+  auto parsed = parse_quote_request(request.body, config_.jobs);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) return to_response(*problem);
+  SubmitJob submission{std::get<JobRequest>(std::move(parsed)), idempotency_key(request)};
+  const auto result = await<SubmittedJob>([&](auto reply) {
+    parts_.scheduler.submit(std::move(submission), std::move(reply));
+  });
+  if (!result) return to_response(problem_of(result.error()));
+  auto response = json_response(202, quote_json(result->job));
+  response.headers.emplace_back("Location", "/v1/quotes/" + result->job.id);
+  return response;
+}
+
+Answer Api::get_quote(const Request& request) {
+  if (auto problem = check_query(request, {})) return to_response(*problem);
+  if (auto problem = check_job_id(request)) return to_response(*problem);
+  const auto job = await<JobSnapshot>([&](auto reply) {
+    parts_.scheduler.get(path_parameter(request, "job"), std::move(reply));
+  });
+  if (!job) return to_response(problem_of(job.error()));
+  return json_response(200, quote_json(*job));
 }
 
 Answer Api::list_jobs(const Request& request) {

@@ -120,6 +120,11 @@ Json accuracy_value(const JobSnapshot& job) {
           {"target_reached", target ? Json(target_met(job.request.stop, a)) : Json(nullptr)}};
 }
 
+Json continues_value(const JobSnapshot& job) {
+  if (job.continues.empty()) return nullptr;
+  return {{"job", job.continues}, {"samples", job.continued_samples}};
+}
+
 Json job_value(const JobSnapshot& job) {
   Json warnings = Json::array();
   for (const auto& warning : job.warnings) {
@@ -142,6 +147,7 @@ Json job_value(const JobSnapshot& job) {
           {"remaining_seconds", is_final(job.state) ? Json(nullptr) : value_or_null(job.remaining_seconds)},
           {"statistics", statistics_value(job.id, job.statistics)},
           {"accuracy", accuracy_value(job)},
+          {"continues", continues_value(job)},
           {"done_by", job.done_by == DoneBy::kNone ? Json(nullptr) : Json(name(job.done_by))},
           {"warnings", std::move(warnings)},
           {"error", error_value(job)},

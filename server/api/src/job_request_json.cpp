@@ -145,9 +145,8 @@ nlohmann::ordered_json overrides_value(const LightModelOverrides& o) {
   return value;
 }
 
-JobRequest read_request(const json& object, const JobLimits& limits, Errors& errors) {
-  JobRequest request;
-  FieldReader reader(object, "", errors);
+/// All fields of a picture but when it is done.
+void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
   if (const auto scene = reader.text("scene", {0, 100}, Need::kRequired)) {
     request.scene = *scene;
     if (!is_sha256_hex(*scene)) {
@@ -159,7 +158,6 @@ JobRequest read_request(const json& object, const JobLimits& limits, Errors& err
   const FieldReader::Bounds side{1, as_bound(limits.max_side)};
   read_integer(reader, "width", side, Need::kRequired, request.width);
   read_integer(reader, "height", side, Need::kRequired, request.height);
-  read_stop(reader, limits, errors, request);
   read_named(reader, "light_model", "physical, seed", light_model_named, request.light_model);
   read_overrides(reader, errors, request);
   if (const auto depth = reader.natural("max_depth", {0, as_bound(limits.max_depth)})) {
@@ -173,27 +171,58 @@ JobRequest read_request(const json& object, const JobLimits& limits, Errors& err
   if (const auto on = reader.boolean("emitter_sampling")) request.emitter_sampling = *on;
   read_integer(reader, "tile", {1, as_bound(limits.max_tile)}, Need::kOptional, request.tile);
   read_integer(reader, "priority", {1, as_bound(limits.max_priority)}, Need::kOptional, request.priority);
-  reader.finish();
-  return request;
 }
 
-}  // namespace
-
-std::variant<JobRequest, Problem> parse_job_request(std::string_view body, const JobLimits& limits) {
+/// Reads an object by `read`; the problem tells all that is wrong with it.
+template <class Value, class Read>
+std::variant<Value, Problem> parse_object(std::string_view body, Read read) {
   Errors errors;
   auto parsed = parse_json(body, errors);
   if (auto* problem = std::get_if<Problem>(&parsed)) return *problem;
   const json& value = std::get<json>(parsed);
-  JobRequest request;
-  if (value.is_object()) request = read_request(value, limits, errors);
-  else errors.push_back({"", "wrong_type", "must be an object"});
-  if (errors.empty()) return request;
+  Value result;
+  if (value.is_object()) {
+    FieldReader reader(value, "", errors);
+    read(reader, errors, result);
+    reader.finish();
+  } else {
+    errors.push_back({"", "wrong_type", "must be an object"});
+  }
+  if (errors.empty()) return result;
   Problem problem{422, "invalid_request",
                   errors.size() == 1 ? (errors[0].pointer.empty() ? "the body" : errors[0].pointer) + ' ' +
                                            errors[0].detail
                                      : std::to_string(errors.size()) + " fields are wrong"};
   problem.errors = std::move(errors);
   return problem;
+}
+
+}  // namespace
+
+std::variant<JobRequest, Problem> parse_job_request(std::string_view body, const JobLimits& limits) {
+  return parse_object<JobRequest>(body, [&](FieldReader& reader, Errors& errors, JobRequest& request) {
+    read_picture(reader, limits, errors, request);
+    read_stop(reader, limits, errors, request);
+  });
+}
+
+std::variant<Extension, Problem> parse_extension(std::string_view body, const JobLimits& limits) {
+  return parse_object<Extension>(body, [&](FieldReader& reader, Errors& errors, Extension& extension) {
+    JobRequest request;
+    read_stop(reader, limits, errors, request);
+    extension.stop = request.stop;
+    if (const auto priority = reader.natural("priority", {1, as_bound(limits.max_priority)})) {
+      extension.priority = static_cast<int>(*priority);
+    }
+  });
+}
+
+std::variant<JobRequest, Problem> parse_quote_request(std::string_view body, const JobLimits& limits) {
+  return parse_object<JobRequest>(body, [&](FieldReader& reader, Errors& errors, JobRequest& request) {
+    read_picture(reader, limits, errors, request);
+    request.stop = {.samples = limits.max_samples,
+                    .seconds = positive(reader, "pilot_seconds", kMostPilotSeconds).value_or(kPilotSeconds)};
+  });
 }
 
 nlohmann::ordered_json stop_value(const StopRule& stop) {
@@ -233,6 +262,19 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
 std::string job_request_json(const JobRequest& request) {
   return job_request_value(request).dump(-1, ' ', false,
                                          nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string extension_json(const Extension& extension) {
+  nlohmann::ordered_json value{{"stop", stop_value(extension.stop)}};
+  if (extension.priority) value["priority"] = *extension.priority;
+  return value.dump();
+}
+
+std::string quote_request_json(const JobRequest& request, double pilot_seconds) {
+  auto value = job_request_value(request);
+  value.erase("stop");
+  value["pilot_seconds"] = pilot_seconds;
+  return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace raykiln::server

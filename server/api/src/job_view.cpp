@@ -40,7 +40,29 @@ JobView view_of(const json& job) {
   return view;
 }
 
+QuoteView::Price price_of(const json& price) {
+  QuoteView::Price view{price.at("error").get<double>(), price.at("reached").get<bool>()};
+  if (const json& left = price.at("seconds_left"); left.is_object()) {
+    view.left = {left.at("low").get<double>(), left.at("high").get<double>()};
+  }
+  return view;
+}
+
 }  // namespace
+
+std::optional<QuoteView> parse_quote_view(std::string_view text) {
+  try {
+    const json quote = json::parse(text.begin(), text.end());
+    QuoteView view;
+    view.id = quote.at("id").get<std::string>();
+    view.samples = quote.at("pilot").at("samples").get<double>();
+    view.heavy_tailed = quote.at("heavy_tailed").is_boolean() && quote["heavy_tailed"].get<bool>();
+    for (const json& price : quote.at("prices")) view.prices.push_back(price_of(price));
+    return view;
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
 
 std::optional<JobView> parse_job_view(std::string_view text) {
   try {

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <iostream>
 
+#include "raykiln/api/job_json.hpp"
 #include "raykiln/app/cli.hpp"
 
 namespace raykiln::server {
@@ -63,7 +64,7 @@ std::optional<double> read_error(std::string text) {
 void add_stops(CLI::App& command, JobRequest& request) {
   command.add_option_function<double>(
              "--seconds", [&request](double seconds) { request.stop.seconds = seconds; },
-             "stop after so much time of rendering")
+             "stop after so much time of rendering, in all")
       ->check(CLI::Range(1e-3, JobLimits{}.max_seconds));
   command.add_option_function<std::string>(
       "--error",
@@ -244,6 +245,21 @@ void add_commands(CLI::App& app, CliOptions& options) {
   submit->add_option("--idempotency-key", options.idempotency_key,
                      "the same key again gives the same job");
 
+  auto* extend = app.add_subcommand("extend", "more samples for a completed job, going on from those it has");
+  add_job(*extend, options);
+  extend->add_option("--samples", options.picture.request.stop.samples, "samples per pixel, in all")
+      ->check(CLI::Range(std::uint64_t{1}, JobLimits{}.max_samples));
+  add_stops(*extend, options.picture.request);
+  add_output(*extend, options, false);
+  extend->add_flag("--wait", options.wait, "follow the job to its end (implied by -o)");
+
+  auto* quote = app.add_subcommand("quote", "render a scene on the server for a short time, and print what less error costs");
+  add_view(*quote, options, "WxH in pixels (640x480)");
+  quote->add_option("SCENE", options.scene, kSceneFiles)->required();
+  quote->add_option("--pilot-seconds", options.pilot_seconds, "time of the pilot")
+      ->check(CLI::Range(1e-3, kMostPilotSeconds))
+      ->capture_default_str();
+
   auto* watch = app.add_subcommand("watch", "follow a job to its end");
   add_job(*watch, options);
   auto* fetch = app.add_subcommand("fetch", "download the newest picture of a job");
@@ -284,6 +300,10 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
   options.command = app.get_subcommands().front()->get_name();
   const CLI::App* used = app.get_subcommands().front();
   if (used->get_option_no_throw("--samples") != nullptr) complete_stops(*used, options.picture.request);
+  if (options.command == "extend" && used->count("--samples") + used->count("--seconds") + used->count("--error") == 0) {
+    std::cerr << "raykiln: extend needs --samples, --seconds or --error\n";
+    parsed.exit_code = to_int(ExitCode::kUsage);
+  }
   if (options.command == "accuracy" && used->count("--size") == 0) {
     options.picture.request.width = 160;
     options.picture.request.height = 120;
@@ -308,6 +328,8 @@ ExitCode run_cli(const CliOptions& options) {
   if (options.command == "approve") return approve_command(options);
   if (options.command == "selftest") return selftest_command(options);
   if (options.command == "submit") return submit_command(options);
+  if (options.command == "extend") return extend_command(options);
+  if (options.command == "quote") return quote_command(options);
   if (options.command == "watch") return watch_command(options);
   if (options.command == "fetch") return fetch_command(options);
   if (options.command == "cancel") return cancel_command(options);

@@ -7,6 +7,7 @@
 #include "raykiln/api/percent.hpp"
 #include "raykiln/api/scene_json.hpp"
 #include "remote.hpp"
+#include "text_format.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -38,6 +39,31 @@ std::string clean(const std::string& text) {
   return out;
 }
 
+/// A job that was created: followed to its end where that is asked for, else its id is printed.
+ExitCode see_created(Remote& remote, const CliOptions& options, const ClientResponse& answer) {
+  const auto job = parse_job_view(answer.body);
+  if (!job) return remote.fail(ExitCode::kFailure, "the server's answer is no job");
+  if (options.wait || !options.outputs.empty()) {
+    if (!options.json) std::cout << job->id << std::endl;
+    return see_through(remote, options, job->id);
+  }
+  std::cout << (options.json ? answer.body : job->id) << '\n';
+  return ExitCode::kOk;
+}
+
+std::string percent_of(double fraction) { return short_number(100.0 * fraction) + " %"; }
+
+void print_prices(const QuoteView& quote) {
+  for (const auto& price : quote.prices) {
+    std::cout << "error " << std::left << std::setw(6) << percent_of(price.error);
+    if (price.reached) std::cout << "  reached\n";
+    else if (!price.left) std::cout << "  unknown\n";
+    else std::cout << "  " << short_number(price.left->first) << " to " << short_number(price.left->second) << " s more\n";
+  }
+  if (quote.heavy_tailed) std::cout << "rare bright samples: the ranges are three times as wide\n";
+  std::cout << "raykiln extend " << quote.id << " --error 1% goes on from " << short_number(quote.samples) << " samples a pixel\n";
+}
+
 }  // namespace
 
 ExitCode submit_command(const CliOptions& options) {
@@ -51,13 +77,45 @@ ExitCode submit_command(const CliOptions& options) {
   if (!options.idempotency_key.empty()) headers.emplace_back("Idempotency-Key", options.idempotency_key);
   const auto answer = remote->ask("POST", "/v1/jobs", headers, job_request_json(request));
   if (!answer) return remote->failure();
-  const auto job = parse_job_view(answer->body);
-  if (!job) return remote->fail(ExitCode::kFailure, "the server's answer is no job");
-  if (options.wait || !options.outputs.empty()) {
-    if (!options.json) std::cout << job->id << std::endl;
-    return see_through(*remote, options, job->id);
+  return see_created(*remote, options, *answer);
+}
+
+ExitCode extend_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  const auto answer = remote->ask("POST", "/v1/jobs/" + percent_encode(options.job) + "/extend",
+                                  {{"Content-Type", "application/json"}},
+                                  extension_json({options.picture.request.stop, std::nullopt}));
+  if (!answer) return remote->failure();
+  return see_created(*remote, options, *answer);
+}
+
+ExitCode quote_command(const CliOptions& options) {
+  auto remote = Remote::open(options);
+  if (!remote) return ExitCode::kUsage;
+  const auto scene = upload_scene(*remote, options);
+  if (!scene) return remote->failure();
+  JobRequest request = options.picture.request;
+  request.scene = *scene;
+  const auto answer = remote->ask("POST", "/v1/quotes", {{"Content-Type", "application/json"}},
+                                  quote_request_json(request, options.pilot_seconds));
+  if (!answer) return remote->failure();
+  const auto pilot = parse_quote_view(answer->body);
+  if (!pilot) return remote->fail(ExitCode::kFailure, "the server's answer is no quote");
+  ProgressLine line(std::cerr, on_terminal(), options.quiet);
+  const auto end = remote->follow(pilot->id, line, nullptr);
+  line.finish();
+  if (!end) return remote->failure();
+  if (end->state != "completed") {
+    std::cerr << "raykiln: the pilot " << end->state << (end->error.empty() ? "" : ": " + end->error) << '\n';
+    return exit_code_for_state(end->state);
   }
-  std::cout << (options.json ? answer->body : job->id) << '\n';
+  const auto prices = remote->ask("GET", "/v1/quotes/" + pilot->id);
+  if (!prices) return remote->failure();
+  const auto quote = parse_quote_view(prices->body);
+  if (!quote) return remote->fail(ExitCode::kFailure, "the server's answer is no quote");
+  if (options.json) std::cout << prices->body << '\n';
+  else print_prices(*quote);
   return ExitCode::kOk;
 }
 

@@ -40,6 +40,9 @@ Router make_routes(Api& api, const StaticFiles& files, std::size_t max_json_byte
   table.route("GET", "/v1/jobs", to(&Api::list_jobs));
   table.route("GET", "/v1/jobs/<job>", to(&Api::get_job));
   table.route("GET", "/v1/jobs/<job>/accuracy", to(&Api::get_accuracy));
+  table.route("POST", "/v1/jobs/<job>/extend", to(&Api::extend_job), max_json_bytes);
+  table.route("POST", "/v1/quotes", to(&Api::create_quote), max_json_bytes);
+  table.route("GET", "/v1/quotes/<job>", to(&Api::get_quote));
   table.route("POST", "/v1/jobs/<job>/cancel", to(&Api::cancel_job));
   table.route("GET", "/v1/jobs/<job>/events", to(&Api::watch_job));
   table.route("GET", "/v1/jobs/<job>/image", to(&Api::get_image));

@@ -87,6 +87,8 @@ void write_accuracy(RecordWriter& r, const JobSnapshot& job) {
   write_curve(r, job.curve);
   write_forecasts(r, job.forecasts);
   for (const std::uint64_t samples : job.tile_samples) r.natural("tile_samples", samples);
+  if (!job.continues.empty()) r.text("continues", job.continues);
+  r.real("continued_samples", job.continued_samples);
   if (!job.accuracy) return;
   const PictureError& a = *job.accuracy;
   r.text("accuracy.grade", a.grade);
@@ -104,6 +106,8 @@ void read_accuracy(const RecordReader& r, JobSnapshot& job) {
   job.curve = read_curve(r);
   job.forecasts = read_forecasts(r);
   job.tile_samples = naturals(r.list("tile_samples"));
+  job.continues = r.text("continues");
+  job.continued_samples = r.real("continued_samples");
   if (!r.has("accuracy.grade")) return;
   PictureError& a = job.accuracy.emplace();
   a.grade = r.text("accuracy.grade");

@@ -73,18 +73,42 @@ void TilePlan::set_limit(std::size_t end_block) {
   }
 }
 
+/// Blocks that fit into so many samples.
+std::size_t TilePlan::blocks_within(std::uint64_t samples) const {
+  const auto above = std::upper_bound(samples_before_.begin(), samples_before_.end(), samples);
+  return static_cast<std::size_t>(above - samples_before_.begin()) - 1;
+}
+
 void TilePlan::set_tile_samples(const std::vector<std::uint64_t>& samples) {
   samples_target_ = 0;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     Tile& tile = tiles_[i];
-    const auto above = std::upper_bound(samples_before_.begin(), samples_before_.end(),
-                                        samples.at(row_major(tile)));
-    tile.end_block = static_cast<std::size_t>(above - samples_before_.begin()) - 1;
+    tile.end_block = blocks_within(samples.at(row_major(tile)));
     samples_target_ += tile.rect.pixels() * samples_before_[tile.end_block];
     if (tile.end_block > 0) continue;
     ready_.erase({0, i});
     ++tiles_done_;
   }
+}
+
+void TilePlan::resume(const std::vector<std::uint64_t>& samples) {
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    Tile& tile = tiles_[i];
+    const std::size_t begin = std::min(blocks_within(samples.at(row_major(tile))), tile.end_block);
+    if (begin == 0) continue;
+    ready_.erase({0, i});
+    tile.next_block = tile.pass_end = begin;
+    ++tiles_started_;
+    samples_done_ += tile.rect.pixels() * samples_before_[begin];
+    if (begin == tile.end_block) ++tiles_done_;
+    else if (begin < limit_) ready_.emplace(begin, i);
+  }
+}
+
+std::size_t TilePlan::furthest_block() const {
+  std::size_t furthest = 0;
+  for (const Tile& tile : tiles_) furthest = std::max(furthest, tile.next_block);
+  return furthest;
 }
 
 void TilePlan::close() {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "kept_films.hpp"
 #include "raykiln/base/serial_thread.hpp"
 #include "raykiln/jobs/fair_share.hpp"
 #include "raykiln/jobs/tile_plan.hpp"
@@ -36,6 +37,7 @@ struct LiveJob {
   std::stop_source stop;
   int in_flight = 0;
   SteadyTime active_since{}, render_since{};
+  double seconds_before = 0.0;  ///< render seconds of the jobs that this one goes on from
 
   // Publication.
   bool new_samples = false;        ///< since the last revision
@@ -65,6 +67,7 @@ class Scheduler::Core {
 
   // core_jobs.cpp
   void submit(SubmitJob submission, const Reply<SubmittedJob>& reply);
+  void extend(ExtendJob extension, const Reply<SubmittedJob>& reply);
   void get(const JobId& id, const Reply<JobSnapshot>& reply);
   void list(const ListJobs& query, const Reply<JobPage>& reply);
   void cancel(const JobId& id, const Reply<JobSnapshot>& reply);
@@ -114,6 +117,11 @@ class Scheduler::Core {
   void archived(const JobId& id, const Status& saved, JobImagePtr image,
                 std::optional<PictureError> error);
 
+  // core_extend.cpp
+  [[nodiscard]] Result<SubmitJob> extended(ExtendJob extension);
+  void go_on_from(LiveJob& job, KeptFilm kept);
+  void keep_film(LiveJob& job, const JobImage& image);
+
   // core_accuracy.cpp
   void begin_stops(LiveJob& job);
   void time_is_up(const JobId& id);
@@ -152,6 +160,7 @@ class Scheduler::Core {
   std::map<JobId, std::unique_ptr<LiveJob>> live_;
   std::vector<JobId> queue_;  ///< in the order in which jobs start
   FairShare shares_;
+  KeptFilms kept_;
   std::vector<JobImagePtr> images_;  ///< the most recent last
   std::map<std::string, std::unique_ptr<PrepareTicket>> prepares_;  ///< by scene, asked for by clients
   std::map<int, SteadyTime> worker_free_since_;

@@ -17,15 +17,25 @@ constexpr std::uint64_t kMostLivePixels = 4'000'000;
 
 bool samples_area(const JobSnapshot& job) { return job.request.pixel_mode == PixelMode::kRandom; }
 
+/// The first decision beyond what is rendered: at borders of blocks, each from the one before.
+std::size_t decision_after(const LiveJob& job) {
+  std::size_t block = job.plan->blocks_for(kErrorFloor);
+  while (block <= job.plan->limit() && block < job.blocks.size()) {
+    const render::SampleBlock& last = job.blocks[block - 1];
+    block = job.plan->blocks_for(next_decision(last.first + last.count));
+  }
+  return block;
+}
+
 }  // namespace
 
 void Scheduler::Core::begin_stops(LiveJob& job) {
   const StopRule& stop = job.snapshot.request.stop;
-  if (!stop.tile_samples.empty()) job.plan->set_tile_samples(stop.tile_samples);
-  if (stop.error) job.plan->set_limit(job.plan->blocks_for(kErrorFloor));
+  // A job that goes on is judged where it is; then where it would have been judged from its beginning.
+  if (stop.error) job.plan->set_limit(std::max(job.plan->blocks_for(kErrorFloor), job.plan->furthest_block()));
   if (stop.seconds) {
     const JobId id = job.snapshot.id;
-    const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000.0 * *stop.seconds)));
+    const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000.0 * std::max(0.0, *stop.seconds - job.seconds_before))));
     strand_->post_after(wait, [this, id] { time_is_up(id); });
   }
   if (job.plan->at_rest()) rest(job);
@@ -51,8 +61,7 @@ void Scheduler::Core::rest(LiveJob& job) {
   if (target_met(job.snapshot.request.stop, *job.snapshot.accuracy)) {
     return finish(job, DoneBy::kError);
   }
-  const render::SampleBlock& last = job.blocks[job.plan->limit() - 1];
-  job.plan->set_limit(job.plan->blocks_for(next_decision(last.first + last.count)));
+  job.plan->set_limit(decision_after(job));
   publish_soon(job);
 }
 

@@ -23,6 +23,12 @@ std::vector<JobWarning> warnings_of(const SceneReport& report) {
   return warnings;
 }
 
+/// What an idempotency key is bound to.
+std::string digest_of(const SubmitJob& submission) {
+  const std::string digest = request_digest(submission.request);
+  return submission.continues.empty() ? digest : digest + ' ' + submission.continues;
+}
+
 std::optional<std::uint64_t> read_cursor(const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -56,7 +62,7 @@ Result<std::optional<SubmittedJob>> Scheduler::Core::earlier_submission(const Su
   auto earlier = parts_.store.job_with_key(s.idempotency_key);
   if (!earlier) return earlier.error();
   if (!earlier->has_value()) return std::optional<SubmittedJob>();
-  if ((*earlier)->request_digest != request_digest(s.request)) {
+  if ((*earlier)->request_digest != digest_of(s)) {
     return Error{ErrorKind::kConflict, "idempotency_key_reused",
                  "this key was used for another request", "Idempotency-Key"};
   }
@@ -103,7 +109,8 @@ Result<SubmittedJob> Scheduler::Core::try_submit(SubmitJob submission) {
                                           static_cast<std::uint64_t>(request.width) *
                                           static_cast<std::uint64_t>(request.height);
   job->idempotency_key = submission.idempotency_key;
-  job->request_digest = request_digest(request);
+  job->request_digest = digest_of(submission);
+  job->snapshot.continues = submission.continues;
   if (auto stored = parts_.store.put_job({job->snapshot.id, JobState::kQueued, 1, request.scene,
                                           job->snapshot.created, job->snapshot.created,
                                           job->idempotency_key, job->request_digest,

@@ -10,6 +10,7 @@ Scheduler::Core::Core(const Config& config, const Parts& parts)
     : config_(config),
       parts_(parts),
       hub_(config.http.max_watchers),
+      kept_(config.scheduler.max_kept_film_bytes),
       queued_gauge_(parts.metrics.gauge("raykiln_jobs_queued", "jobs that wait")),
       active_gauge_(parts.metrics.gauge("raykiln_jobs_active", "jobs preparing or rendering")),
       rays_(parts.metrics.counter("raykiln_rays_total", "rays that were traced")),
@@ -64,6 +65,7 @@ void Scheduler::Core::restore() {
       job.snapshot.accuracy.reset();
       job.snapshot.curve.clear();
       job.snapshot.forecasts.clear();
+      job.snapshot.continued_samples = 0.0;  // films do not outlive a process
       job.snapshot.progress.samples_done = 0;
       job.snapshot.progress.stop_fraction = 0.0;
       job.snapshot.progress.tiles_started = job.snapshot.progress.tiles_done = 0;

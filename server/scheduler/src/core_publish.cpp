@@ -26,7 +26,7 @@ void Scheduler::Core::refresh(LiveJob& job) {
   s.remaining_seconds.reset();
   if (!job.plan) return;
   if (!job.ending) {
-    s.statistics = with_time(std::move(s.statistics), seconds_between(job.render_since, now));
+    s.statistics = with_time(std::move(s.statistics), job.seconds_before + seconds_between(job.render_since, now));
     s.progress.tiles = job.plan->tiles();
     s.progress.tiles_started = job.plan->tiles_started();
     s.progress.tiles_done = job.plan->tiles_done();

@@ -129,13 +129,18 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
   job.scene = std::move(scene);
   job.blocks = render::blocks_for(s.request.stop.samples);
-  job.film = std::make_shared<render::Film>(s.request.width, s.request.height);
-  job.picture = {s.request.width, s.request.height,
-                 std::vector<float>(3 * static_cast<std::size_t>(s.request.width) *
-                                    static_cast<std::size_t>(s.request.height))};
-  job.pixel_seconds.assign(static_cast<std::size_t>(s.request.width) * static_cast<std::size_t>(s.request.height), 0.0F);
   job.plan.emplace(s.request.width, s.request.height, s.request.tile, samples_of(job.blocks),
                    task_length(config_.scheduler));
+  if (!s.request.stop.tile_samples.empty()) job.plan->set_tile_samples(s.request.stop.tile_samples);
+  auto kept = s.continues.empty() ? std::nullopt : kept_.take(s.continues);
+  if (kept) {
+    go_on_from(job, std::move(*kept));
+  } else {
+    const auto pixels = static_cast<std::size_t>(s.request.width) * static_cast<std::size_t>(s.request.height);
+    job.film = std::make_shared<render::Film>(s.request.width, s.request.height);
+    job.picture = {s.request.width, s.request.height, std::vector<float>(3 * pixels)};
+    job.pixel_seconds.assign(pixels, 0.0F);
+  }
   job.render_since = parts_.clock.steady();
   s.statistics.prepare_seconds = seconds_between(job.active_since, job.render_since);
   s.prepare = {};
@@ -313,6 +318,7 @@ void Scheduler::Core::archived(const JobId& id, const Status& saved, JobImagePtr
     last->render_seconds = job->snapshot.statistics.render_seconds;
     remember(std::move(last));
   }
+  if (image && event == JobEvent::kRendered) keep_film(*job, *image);
   transition(*job, event, std::move(error));
   pump();
 }

@@ -37,6 +37,11 @@ void Scheduler::submit(SubmitJob submission, Reply<SubmittedJob> reply) {
     core->submit(std::move(s), to);
   });
 }
+void Scheduler::extend(ExtendJob extension, Reply<SubmittedJob> reply) {
+  ask(*core_, reply, [core = core_.get(), e = std::move(extension)](const auto& to) mutable {
+    core->extend(std::move(e), to);
+  });
+}
 void Scheduler::get(JobId id, Reply<JobSnapshot> reply) {
   ask(*core_, reply, [core = core_.get(), id = std::move(id)](const auto& to) { core->get(id, to); });
 }

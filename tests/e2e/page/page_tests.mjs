@@ -190,6 +190,29 @@ export const kPageTests = [
     assert.equal(await page.evaluate(() => document.activeElement?.id), "field-scene");
   })],
 
+  ["less error has a price, and is bought by the keyboard", with_tab(async (page, url) => {
+    const id = await done_job(url);
+    const known = await (await fetch(`${url}/v1/jobs/${id}`)).json();
+    if (!known.accuracy) return; // the mock judges no errors
+    await page.goto(`${url}/jobs/${id}`);
+    const control = page.getByLabel("Less error");
+    await control.waitFor();
+    await control.focus();
+    const text = page.locator("#price-text");
+    for (let step = 0; step < 40; step += 1) await page.keyboard.press("ArrowLeft");
+    assert.match(await text.innerText(), /^10 %/);
+    const go_on = page.getByRole("button", { name: "Continue to here" });
+    for (let step = 0; step < 40 && await go_on.isDisabled(); step += 1) await page.keyboard.press("ArrowRight");
+    assert.match(await text.innerText(), /more$/);
+    await page.keyboard.press("Tab");
+    await page.keyboard.press("Enter");
+    await page.waitForURL((to) => /\/jobs\//.test(to.pathname) && !to.pathname.endsWith(id));
+    await state_is(page, "completed");
+    const next = await (await fetch(`${url}/v1/jobs/${new URL(page.url()).pathname.split("/").pop()}`)).json();
+    assert.equal(next.continues.job, id);
+    assert.equal(next.done_by, "error");
+  })],
+
   ["a bad upload says what is wrong and where", with_tab(async (page) => {
     await page.setInputFiles("#pick-files", bad_files());
     const reason = page.locator(".upload .problem");

@@ -26,6 +26,9 @@ class Api:
     def get(self, path, **options):
         return self.request("GET", path, **options)
 
+    def post(self, path, body, expect=(202,), **options):
+        return self._expected(self.request("POST", path, json=body, **options), expect)
+
     def json(self, path, **options):
         answer = self.get(path, **options)
         assert answer.status_code == 200, (path, answer.status_code, answer.text)

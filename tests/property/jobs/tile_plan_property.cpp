@@ -1,6 +1,7 @@
 // Every (pixel, block) is rendered and merged exactly once, in order, whatever workers do.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "raykiln/jobs/tile_plan.hpp"
@@ -87,6 +88,37 @@ TEST(TilePlanProperty, EveryPixelAndBlockOnceAndInOrder) {
                         {50, 50, 7, {1, 1, 2, 4, 8, 16, 16, 16, 16}, 1e-9}};
   for (const Case& c : cases) {
     for (unsigned seed = 1; seed <= 5; ++seed) run(c, seed);
+  }
+}
+
+// Begun at any samples, tile by tile, the rest is handed out once and in order.
+TEST(TilePlanProperty, ResumedTilesGetWhatTheyLackAndNoMore) {
+  const std::vector<std::uint32_t> blocks{1, 1, 2, 4, 8, 16, 7};
+  const std::vector<std::uint64_t> borders{0, 1, 2, 4, 8, 16, 32, 39};
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    std::mt19937 random(seed);
+    TilePlan plan(40, 30, 10, blocks, TaskLength{});
+    std::vector<std::uint64_t> begun(12);
+    for (auto& samples : begun) samples = random() % 45;
+    plan.resume(begun);
+    std::vector<std::size_t> next(12);
+    for (std::size_t i = 0; i < 12; ++i) {
+      next[i] = static_cast<std::size_t>(std::upper_bound(borders.begin(), borders.end(), begun[i]) - borders.begin()) - 1;
+    }
+    EXPECT_EQ(plan.furthest_block(), *std::max_element(next.begin(), next.end()));
+    while (auto item = plan.next()) {
+      for (const auto& part : item->parts) {
+        ASSERT_EQ(part.rect.pixels(), 100U);  // whole tiles: so little work is not cut
+        std::size_t& at = next[static_cast<std::size_t>(part.rect.y0 / 10 * 4 + part.rect.x0 / 10)];
+        ASSERT_EQ(item->first_block, at);
+        at = item->end_block;
+      }
+      ASSERT_TRUE(plan.merged(*item, 1e-9));
+    }
+    EXPECT_TRUE(plan.done());
+    EXPECT_EQ(plan.samples_done(), plan.samples_target());
+    EXPECT_EQ(plan.tiles_started(), 12);
+    for (const std::size_t blocks_merged : next) EXPECT_EQ(blocks_merged, blocks.size());
   }
 }
 

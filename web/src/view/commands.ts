@@ -14,6 +14,8 @@ export interface Commands {
   show_older(): void;
   cancel(id: string): void;
   render_again(id: string): void;
+  /** Goes on with a completed job until its error is so small. */
+  extend(id: string, error: number): void;
   set_exposure(stops: number): void;
   set_layer(layer: Layer): void;
   set_zoom(zoom: "fit" | "actual"): void;

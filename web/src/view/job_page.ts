@@ -10,6 +10,7 @@ import { CurveView } from "./curve";
 import { Facts, h, set_attribute, set_hidden, set_text } from "./dom";
 import { report } from "./job_form";
 import { Picture } from "./picture";
+import { PriceView } from "./price";
 import { WarningList } from "./warnings";
 
 const kLayerNames: Record<Layer, string> = {
@@ -46,6 +47,7 @@ export class JobPage {
   private legend_text_ = h("span", { class: "hint" });
   private legend_ = h("div", { class: "legend", hidden: true }, h("span", { class: "legend-bar" }), this.legend_text_);
   private curve_ = new CurveView();
+  private price_: PriceView;
   private scale_ = h("span", { class: "hint scale" });
   private statistics_ = new Facts();
   private settings_ = new Facts();
@@ -57,6 +59,7 @@ export class JobPage {
   private id_ = "";
 
   constructor(commands: Commands) {
+    this.price_ = new PriceView((job, error) => commands.extend(job, error));
     this.cancel_.addEventListener("click", () => commands.cancel(this.id_));
     this.again_.addEventListener("click", () => commands.render_again(this.id_));
     this.exposure_.addEventListener("input", () => commands.set_exposure(this.exposure_.valueAsNumber));
@@ -89,7 +92,7 @@ export class JobPage {
       this.failure_, this.figures_.element,
       h("div", { class: "row actions" }, this.cancel_, this.again_),
       this.command_problem_, this.downloads_, this.warnings_.element,
-      this.curve_.element,
+      this.curve_.element, this.price_.element,
       fold("Statistics", this.statistics_, true),
       fold("Settings", this.settings_, false),
       fold("Scene", this.scene_, false));
@@ -124,6 +127,7 @@ export class JobPage {
     this.picture.set_zoom(state.zoom);
     set_text(this.command_problem_, state.command_problem);
     set_hidden(this.command_problem_, state.command_problem === "");
+    if (job) this.price_.update(job, state.accuracy);
     if (job) this.show(state, job);
     else this.wait(id);
   }
@@ -305,6 +309,7 @@ function setting_rows(job: Job): [string, string][] {
   for (const [key, value] of Object.entries(overrides ?? {})) rows.push([label_of(key), statistic(key, value)]);
   for (const [key, value] of Object.entries(rest)) rows.push([label_of(key), statistic(key === "seed" ? "" : key, value)]);
   rows.push(["Job", job.id]);
+  if (job.continues) rows.push(["Continues", `${job.continues.job}, ${count(job.continues.samples)} samples taken over`]);
   return rows;
 }
 

@@ -129,6 +129,9 @@ class Film {
   /// tile or planes do not fit this film: a broken promise, not an input.
   void fold(const PixelRect& tile, const BlockResult& block);
 
+  /// Forgets the incomplete last blocks: every pixel is at the border of a block, as before they came.
+  void drop_incomplete() { tails_.clear(); }
+
   /// Mean of all samples so far; black where there are none.
   [[nodiscard]] Image resolve() const;
 

@@ -35,6 +35,9 @@ class Api {
   [[nodiscard]] Answer prepare_scene(const Request& request);
 
   [[nodiscard]] Answer create_job(const Request& request);
+  [[nodiscard]] Answer extend_job(const Request& request);
+  [[nodiscard]] Answer create_quote(const Request& request);
+  [[nodiscard]] Answer get_quote(const Request& request);
   [[nodiscard]] Answer list_jobs(const Request& request);
   [[nodiscard]] Answer get_job(const Request& request);
   [[nodiscard]] Answer get_accuracy(const Request& request);

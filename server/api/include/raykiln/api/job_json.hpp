@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -19,6 +20,20 @@ namespace raykiln::server {
 [[nodiscard]] std::variant<JobRequest, Problem> parse_job_request(std::string_view body,
                                                                   const JobLimits& limits);
 
+/// Body of POST /v1/jobs/{job}/extend.
+struct Extension {
+  StopRule stop;
+  std::optional<int> priority{};
+};
+[[nodiscard]] std::string extension_json(const Extension& extension);
+[[nodiscard]] std::variant<Extension, Problem> parse_extension(std::string_view body, const JobLimits& limits);
+
+/// Body of POST /v1/quotes: a job without a stop, whose pilot takes `pilot_seconds`.
+inline constexpr double kPilotSeconds = 2.0, kMostPilotSeconds = 60.0;
+[[nodiscard]] std::string quote_request_json(const JobRequest& request, double pilot_seconds);
+[[nodiscard]] std::variant<JobRequest, Problem> parse_quote_request(std::string_view body,
+                                                                    const JobLimits& limits);
+
 /// With all defaults written out; parse_job_request gives the same request back.
 [[nodiscard]] std::string job_request_json(const JobRequest& request);
 
@@ -26,6 +41,8 @@ namespace raykiln::server {
 [[nodiscard]] std::string job_json(const JobSnapshot& job);
 /// Schema JobAccuracy, on one line.
 [[nodiscard]] std::string accuracy_json(const JobSnapshot& job);
+/// Schema Quote: what less error of this picture costs, from what is known of it by now.
+[[nodiscard]] std::string quote_json(const JobSnapshot& job);
 [[nodiscard]] std::string job_page_json(const std::vector<JobSnapshot>& jobs,
                                         const std::string& next_cursor);
 
@@ -41,6 +58,20 @@ struct JobView {
   bool has_image = false;
   std::string error;  ///< empty, or "code: detail (where)"
 };
+
+/// What a client wants to know of a quote.
+struct QuoteView {
+  std::string id;
+  double samples = 0.0;  ///< of the pilot, a pixel
+  bool heavy_tailed = false;
+  struct Price {
+    double error = 0.0;
+    bool reached = false;
+    std::optional<std::pair<double, double>> left{};  ///< seconds more: a 90 % range
+  };
+  std::vector<Price> prices;
+};
+[[nodiscard]] std::optional<QuoteView> parse_quote_view(std::string_view text);
 
 /// Nothing when the text is no job.
 [[nodiscard]] std::optional<JobView> parse_job_view(std::string_view text);

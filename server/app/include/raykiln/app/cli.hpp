@@ -75,6 +75,7 @@ struct CliOptions {
   std::string job;
   std::string state;  ///< filter of `jobs`
   std::string idempotency_key;
+  double pilot_seconds = 2.0;  ///< of `quote`
 };
 
 struct ParsedCli {
@@ -115,6 +116,10 @@ struct ParsedCli {
 [[nodiscard]] ExitCode approve_command(const CliOptions& options);
 
 [[nodiscard]] ExitCode submit_command(const CliOptions& options);
+/// More samples for a completed job, from those that it has.
+[[nodiscard]] ExitCode extend_command(const CliOptions& options);
+/// Renders for a short time and prints what less error costs.
+[[nodiscard]] ExitCode quote_command(const CliOptions& options);
 [[nodiscard]] ExitCode watch_command(const CliOptions& options);
 [[nodiscard]] ExitCode fetch_command(const CliOptions& options);
 [[nodiscard]] ExitCode cancel_command(const CliOptions& options);

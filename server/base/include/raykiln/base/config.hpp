@@ -41,6 +41,7 @@ struct SchedulerSettings {
   std::size_t max_queued_jobs = 100;
   std::size_t max_active_jobs = 8;               ///< preparing or rendering at once
   std::uint64_t max_film_bytes = 4 * kGiB;       ///< of all active jobs together
+  std::uint64_t max_kept_film_bytes = kGiB;      ///< films of completed jobs kept in memory, to go on from
   int max_attempts = 3;                          ///< of one work item
   double task_seconds_low = 0.005;               ///< a task is meant to last between these
   double task_seconds_target = 0.025;

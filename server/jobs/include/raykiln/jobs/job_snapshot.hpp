@@ -112,6 +112,8 @@ struct JobSnapshot {
   std::vector<CurvePoint> curve;               ///< error against time; at most kMostCurvePoints
   std::vector<Forecast> forecasts;             ///< of the time to half the error; at most kMostForecasts
   std::vector<std::uint64_t> tile_samples;     ///< where tiles differ in the end; else empty
+  JobId continues{};                           ///< the job whose samples it goes on from; empty: none
+  double continued_samples = 0.0;              ///< a pixel, taken over from it; 0: it began anew
   std::vector<JobWarning> warnings;            ///< of the scene, and of this job
   std::optional<Error> error{};                 ///< when failed
 };

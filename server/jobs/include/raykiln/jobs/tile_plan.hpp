@@ -58,6 +58,12 @@ class TilePlan {
   /// Each tile ends at the last border of a block at or below its number of samples (one a tile, row by
   /// row from the top left). Before the first next().
   void set_tile_samples(const std::vector<std::uint64_t>& samples);
+  /// Each tile begins where so many samples (one number a tile, row by row from the top left) have been
+  /// merged before: at the last border of a block at or below it. After set_tile_samples(), before the
+  /// first next().
+  void resume(const std::vector<std::uint64_t>& samples);
+  /// First block that the tile that is furthest has not merged.
+  [[nodiscard]] std::size_t furthest_block() const;
   /// No tile starts another pass; those that have begun are handed out to their end.
   void close();
   /// Nothing is in flight and nothing can be handed out: all is done, the limit is reached, or the plan
@@ -113,6 +119,7 @@ class TilePlan {
     return samples_before_[end] - samples_before_[first];
   }
   [[nodiscard]] std::size_t blocks() const { return samples_before_.size() - 1; }
+  [[nodiscard]] std::size_t blocks_within(std::uint64_t samples) const;
   [[nodiscard]] std::size_t end_of(const Tile& tile) const;
   [[nodiscard]] std::size_t row_major(const Tile& tile) const;
   [[nodiscard]] double cost_of_sample(const Tile& tile) const;

@@ -54,6 +54,9 @@ class Scheduler {
 
   // Jobs.
   void submit(SubmitJob submission, Reply<SubmittedJob> reply);
+  /// A new job that goes on from the samples of a completed one: the same picture as if its stop had been asked
+  /// for at once. "job_not_completed" (kConflict); "invalid_request" when the job has as many samples already.
+  void extend(ExtendJob extension, Reply<SubmittedJob> reply);
   void get(JobId id, Reply<JobSnapshot> reply);
   void list(ListJobs query, Reply<JobPage> reply);
   /// The snapshot just after; "job_finished" when it had ended in another way than cancelled.

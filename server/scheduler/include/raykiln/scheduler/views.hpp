@@ -37,6 +37,15 @@ struct AddSceneOptions {
 struct SubmitJob {
   JobRequest request;
   std::string idempotency_key;  ///< empty: none; at most 200 bytes
+  JobId continues{};            ///< a completed job whose samples are taken over; empty: none
+};
+
+/// More of a completed job: its request with another stop, which counts from the job's beginning.
+struct ExtendJob {
+  JobId job;
+  StopRule stop;
+  std::optional<int> priority{};  ///< nothing: the job's
+  std::string idempotency_key;
 };
 
 struct SubmittedJob {
