@@ -19,8 +19,7 @@ void provoke(const EffectExample& at) {
 const EffectRow kAreaEmittersRow{.effect = Effect::kAreaEmitters,
                                  .name = "area_emitters",
                                  .left_out = "looking emission up at hits",
-                                 .grade = Grade::kIdentical,
-                                 .forced = Grade::kBounded,
+                                 .grade = Grade::kBounded,
                                  .judge = judge,
                                  .provoke = provoke};
 

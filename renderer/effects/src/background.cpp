@@ -16,8 +16,7 @@ void provoke(const EffectExample& at) { at.scene.background = {0.2F, 0.3F, 0.5F}
 const EffectRow kBackgroundRow{.effect = Effect::kBackground,
                                .name = "background",
                                .left_out = "the light of rays that meet nothing",
-                               .grade = Grade::kIdentical,
-                               .forced = Grade::kBounded,
+                               .grade = Grade::kBounded,
                                .judge = judge,
                                .provoke = provoke};
 

@@ -30,8 +30,7 @@ const EffectRow kCausticsRow{.effect = Effect::kCaustics,
                              .left_out =
                                  "telling lobes apart on the way: light that reaches a diffuse "
                                  "surface by way of a specular one",
-                             .grade = Grade::kIdentical,
-                             .forced = Grade::kBounded,
+                             .grade = Grade::kBounded,
                              .judge = judge,
                              .provoke = provoke};
 

@@ -19,8 +19,7 @@ void provoke(const EffectExample& at) {
 const EffectRow kDiffuseReflectionRow{.effect = Effect::kDiffuseReflection,
                                       .name = "diffuse_reflection",
                                       .left_out = "the diffuse lobe on the side of the viewer",
-                                      .grade = Grade::kIdentical,
-                                      .forced = Grade::kBounded,
+                                      .grade = Grade::kBounded,
                                       .judge = judge,
                                       .provoke = provoke};
 

@@ -27,8 +27,7 @@ const EffectRow kDiffuseTransmissionRow{
     .effect = Effect::kDiffuseTransmission,
     .name = "diffuse_transmission",
     .left_out = "the far hemisphere: light that comes diffusely through a surface",
-    .grade = Grade::kIdentical,
-    .forced = Grade::kBounded,
+    .grade = Grade::kBounded,
     .judge = judge,
     .provoke = provoke};
 

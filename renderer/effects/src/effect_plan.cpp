@@ -13,41 +13,36 @@ EffectSet what_is_left(EffectSet called_for, EffectSet without) {
 
 }  // namespace
 
+std::optional<Grade> EffectPlan::grade(Effect effect) const {
+  if (simulated.contains(effect)) return std::nullopt;
+  return called_for.contains(effect) ? row_of(effect).grade : Grade::kIdentical;
+}
+
 EffectPlan plan_effects(const Scene& scene, const SceneUse& use, const EffectJob& job,
                         const EffectChoice& choice) {
   const EffectView view{scene, use, job};
   EffectPlan plan;
   plan.choice = choice;
-  for (const EffectRow* row : effect_table()) {
-    Judgement judgement = row->judge(view);
-    if (judgement.called_for) plan.called_for.insert(row->effect);
-    plan.verdicts.push_back({.effect = row->effect,
-                             .called_for = judgement.called_for,
-                             .evidence = std::move(judgement.evidence)});
+  for (std::size_t i = 0; i < kEffects; ++i) {
+    const EffectRow& row = *effect_table()[i];
+    Judgement judgement = row.judge(view);
+    if (judgement.called_for) plan.called_for.insert(row.effect);
+    plan.evidence[i] = std::move(judgement.evidence);
   }
   plan.simulated = choice.mode == EffectChoice::Mode::kAll
                        ? EffectSet::everything()
                        : what_is_left(plan.called_for, choice.without);
-  for (EffectVerdict& verdict : plan.verdicts) {
-    // What no row vouches for bit by bit stays, unless it is named.
-    const EffectRow& row = row_of(verdict.effect);
-    if (row.grade != Grade::kIdentical && !choice.without.contains(row.effect)) {
-      plan.simulated.insert(row.effect);
-    }
-    verdict.simulated = plan.simulated.contains(verdict.effect);
-  }
   return plan;
 }
 
 std::string effects_label(const EffectPlan& plan) {
-  std::string label = effect_choice_text(plan.choice);
   std::string grades;
-  for (const EffectVerdict& verdict : plan.verdicts) {
-    if (!verdict.approximated()) continue;
+  for (const EffectRow* row : effect_table()) {
+    if (!plan.approximated().contains(row->effect)) continue;
     grades += grades.empty() ? "" : ", ";
-    grades +=
-        std::string(name(verdict.effect)) + ' ' + std::string(name(row_of(verdict.effect).forced));
+    grades.append(row->name).append(" ").append(name(row->grade));
   }
+  const std::string label = effect_choice_text(plan.choice);
   return grades.empty() ? label : label + " (" + grades + ')';
 }
 

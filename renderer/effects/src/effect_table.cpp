@@ -6,11 +6,9 @@ namespace raykiln::render {
 namespace {
 
 constexpr std::array<const EffectRow*, kEffects> kTable{
-    &kPointLightsRow,         &kPointLightShadowsRow, &kAreaEmittersRow,
-    &kEmitterSamplingRow,     &kBackgroundRow,        &kDiffuseReflectionRow,
-    &kDiffuseTransmissionRow, &kGlossyLobesRow,       &kMirrorsRow,
-    &kRefractionRow,          &kFresnelRow,           &kShadingNormalsRow,
-    &kIndirectLightRow,       &kCausticsRow,          &kRouletteRow,
+#define RAYKILN_EFFECT_ENTRY(code_name, name) &k##code_name##Row,
+    RAYKILN_EFFECTS(RAYKILN_EFFECT_ENTRY)
+#undef RAYKILN_EFFECT_ENTRY
 };
 
 }  // namespace

@@ -28,8 +28,7 @@ const EffectRow kEmitterSamplingRow{.effect = Effect::kEmitterSampling,
                                     .left_out =
                                         "drawing points on emitters, their shadow rays and the "
                                         "weights between both ways to an emitter",
-                                    .grade = Grade::kIdentical,
-                                    .forced = Grade::kUnbiased,
+                                    .grade = Grade::kUnbiased,
                                     .judge = judge,
                                     .provoke = provoke};
 

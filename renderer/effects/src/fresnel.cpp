@@ -26,8 +26,7 @@ const EffectRow kFresnelRow{
     .effect = Effect::kFresnel,
     .name = "fresnel",
     .left_out = "the share that borders between media reflect below the critical angle",
-    .grade = Grade::kIdentical,
-    .forced = Grade::kUnbounded,
+    .grade = Grade::kUnbounded,
     .judge = judge,
     .provoke = provoke};
 

@@ -24,8 +24,7 @@ const EffectRow kGlossyLobesRow{
     .effect = Effect::kGlossyLobes,
     .name = "glossy_lobes",
     .left_out = "Phong lobes below exponent 1e8 and, without mirrors, choosing between lobes",
-    .grade = Grade::kIdentical,
-    .forced = Grade::kBounded,
+    .grade = Grade::kBounded,
     .judge = judge,
     .provoke = provoke};
 

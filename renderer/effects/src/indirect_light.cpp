@@ -23,8 +23,7 @@ const EffectRow kIndirectLightRow{.effect = Effect::kIndirectLight,
                                   .left_out =
                                       "rays that go on from hits, unless emitters or the "
                                       "background may be found by the first of them",
-                                  .grade = Grade::kIdentical,
-                                  .forced = Grade::kBounded,
+                                  .grade = Grade::kBounded,
                                   .judge = judge,
                                   .provoke = provoke};
 

@@ -29,8 +29,7 @@ const EffectRow kMirrorsRow{
     .name = "mirrors",
     .left_out =
         "Phong lobes from exponent 1e8 on, reflected by surfaces that are not wholly transparent",
-    .grade = Grade::kIdentical,
-    .forced = Grade::kBounded,
+    .grade = Grade::kBounded,
     .judge = judge,
     .provoke = provoke};
 

@@ -26,8 +26,7 @@ const EffectRow kPointLightsRow{.effect = Effect::kPointLights,
                                 .left_out =
                                     "the loop over point lights at every hit and, where nothing "
                                     "else shines, what a last hit would need for it",
-                                .grade = Grade::kIdentical,
-                                .forced = Grade::kBounded,
+                                .grade = Grade::kBounded,
                                 .judge = judge,
                                 .provoke = provoke};
 

@@ -29,8 +29,7 @@ const EffectRow kRefractionRow{
     .effect = Effect::kRefraction,
     .name = "refraction",
     .left_out = "refracted directions, total internal reflection and indices of refraction",
-    .grade = Grade::kIdentical,
-    .forced = Grade::kBounded,
+    .grade = Grade::kBounded,
     .judge = judge,
     .provoke = provoke};
 

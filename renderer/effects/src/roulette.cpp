@@ -27,8 +27,7 @@ void provoke(const EffectExample& at) {
 const EffectRow kRouletteRow{.effect = Effect::kRoulette,
                              .name = "roulette",
                              .left_out = "ending paths at random",
-                             .grade = Grade::kIdentical,
-                             .forced = Grade::kUnbiased,
+                             .grade = Grade::kUnbiased,
                              .judge = judge,
                              .provoke = provoke};
 

@@ -5,20 +5,8 @@
 
 namespace raykiln::render {
 
-extern const EffectRow kPointLightsRow;
-extern const EffectRow kPointLightShadowsRow;
-extern const EffectRow kAreaEmittersRow;
-extern const EffectRow kEmitterSamplingRow;
-extern const EffectRow kBackgroundRow;
-extern const EffectRow kDiffuseReflectionRow;
-extern const EffectRow kDiffuseTransmissionRow;
-extern const EffectRow kGlossyLobesRow;
-extern const EffectRow kMirrorsRow;
-extern const EffectRow kRefractionRow;
-extern const EffectRow kFresnelRow;
-extern const EffectRow kShadingNormalsRow;
-extern const EffectRow kIndirectLightRow;
-extern const EffectRow kCausticsRow;
-extern const EffectRow kRouletteRow;
+#define RAYKILN_EFFECT_ROW(code_name, name) extern const EffectRow k##code_name##Row;
+RAYKILN_EFFECTS(RAYKILN_EFFECT_ROW)
+#undef RAYKILN_EFFECT_ROW
 
 }  // namespace raykiln::render

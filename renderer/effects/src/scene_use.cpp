@@ -36,7 +36,6 @@ bool is_flat(const TriangleMesh& mesh, std::uint32_t id) {
 SceneUse use_of(const Scene& scene) {
   const TriangleMesh& mesh = scene.mesh;
   SceneUse use;
-  use.triangles = mesh.triangles.size();
   use.shining_point_lights = static_cast<std::uint64_t>(
       std::count_if(scene.point_lights.begin(), scene.point_lights.end(),
                     [](const PointLight& l) { return !is_black(l.intensity); }));
@@ -51,6 +50,14 @@ SceneUse use_of(const Scene& scene) {
     if (used[m]) use.materials.push_back(m);
   }
   return use;
+}
+
+void drop_unused(Scene& scene) {
+  TriangleMesh& mesh = scene.mesh;
+  if (mesh.normals.empty() || use_of(scene).smooth_triangle) return;
+  // Neither clear() nor = {}, which keep the memory.
+  decltype(mesh.normals)().swap(mesh.normals);
+  decltype(mesh.corner_normals)().swap(mesh.corner_normals);
 }
 
 }  // namespace raykiln::render

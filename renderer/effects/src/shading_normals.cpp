@@ -36,8 +36,7 @@ void provoke(const EffectExample& at) {
 const EffectRow kShadingNormalsRow{.effect = Effect::kShadingNormals,
                                    .name = "shading_normals",
                                    .left_out = "interpolating normals",
-                                   .grade = Grade::kIdentical,
-                                   .forced = Grade::kUnbounded,
+                                   .grade = Grade::kUnbounded,
                                    .judge = judge,
                                    .provoke = provoke};
 

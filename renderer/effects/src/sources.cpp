@@ -32,8 +32,6 @@ std::string named(const Material& material) {
   return text.substr(0, text.size() - 2);
 }
 
-bool is_black(const Rgb& c) { return !(c.x > 0.0F || c.y > 0.0F || c.z > 0.0F); }
-
 const Material* emitting_material(const EffectView& view) {
   return find_material(view, [](const Material& m) { return !is_black(m.emission); });
 }

@@ -9,7 +9,6 @@ namespace raykiln::render {
 
 [[nodiscard]] inline bool is_sharp(const Material& m) { return m.specular_exp >= kMirrorExponent; }
 
-[[nodiscard]] bool is_black(const Rgb& c);  ///< no channel above 0
 [[nodiscard]] inline bool is_reflecting(const Material& m) {
   return !is_black(m.diffuse) || !is_black(m.specular);
 }

@@ -1,13 +1,9 @@
 #include "leave_out.hpp"
 
-#include <algorithm>
-
 #include "raykiln/effects/effect_row.hpp"
 
 namespace raykiln::render {
 namespace {
-
-double largest(const Rgb& c) { return static_cast<double>(std::max({c.x, c.y, c.z, 0.0F})); }
 
 void leave_out_diffuse(Bsdf& b, EffectSet effects) {
   if (effects.contains(Effect::kDiffuseReflection)) {
@@ -36,10 +32,11 @@ void leave_out(Bsdf& b, const Material& material, EffectSet effects, bool all_sp
   const Rgbd zero(0.0);
   const bool has_diffuse = b.diffuse_same != zero || b.diffuse_through != zero;
   const bool has_specular = b.specular_opaque != zero || b.specular_transparent != zero;
-  const double diffuse = has_diffuse ? largest(material.diffuse) : 0.0;
-  const double specular = has_specular ? largest(material.specular) : 0.0;
-  b.black = !(diffuse + specular > 0.0);
-  b.choice.specular = b.black ? 0.0 : specular / (diffuse + specular);
+  const Rgb none(0.0F);
+  const auto share = specular_share(has_diffuse ? material.diffuse : none,
+                                    has_specular ? material.specular : none);
+  b.black = !share;
+  b.choice.specular = share.value_or(0.0);
 }
 
 }  // namespace raykiln::render

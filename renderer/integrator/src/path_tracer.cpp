@@ -59,7 +59,7 @@ double rays_of_one_path(int branches, int max_depth) {
 
 struct PathTracer::Scratch {
   Transport transport;
-  ShadeRange shade;  ///< the instance of the shading loop for what is simulated
+  ShadingLoop loop;  ///< the instance for what is simulated
   PathStream front;  ///< paths whose rays are traced next
   PathStream next;   ///< their continuations
   std::vector<Hit> hits;
@@ -79,10 +79,12 @@ PathTracer::PathTracer(const TransportScene& scene, const CameraRays& camera,
                        const PathSettings& settings)
     : camera_(camera) {
   const Transport transport = make_transport(scene, settings);
-  scratch_.reset(new Scratch{transport, shading_loop(switches_for(transport)), {}, {}, {}, {}});
+  scratch_.reset(new Scratch{transport, render::shading_loop(switches_for(transport)), {}, {}, {}, {}});
 }
 
 PathTracer::~PathTracer() = default;
+
+std::string_view PathTracer::shading_loop() const { return scratch_->loop.name; }
 
 void PathTracer::admit(Call& call) {
   PathStream& front = scratch_->front;
@@ -123,7 +125,7 @@ void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
   const Clock::time_point start = Clock::now();
   const double traversal_before = stats.traversal_seconds;
   ShadingSinks sinks{call.results, scratch.shadows, scratch.next, stats, call.stop};
-  scratch.shade(scratch.transport, {scratch.front, scratch.hits, begin, end}, sinks);
+  scratch.loop.run(scratch.transport, {scratch.front, scratch.hits, begin, end}, sinks);
   scratch.shadows.flush(scratch.transport.tree, scratch.transport.settings.traversal, call.results,
                         stats);
   stats.shading_seconds += seconds_since(start) - (stats.traversal_seconds - traversal_before);

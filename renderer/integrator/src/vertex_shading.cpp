@@ -2,12 +2,13 @@
 
 namespace raykiln::render {
 
-ShadeRange shading_loop(const Switches& switches) {
-  if (switches.reduced) return shade_reduced;
-  if (switches.transmission) return shade_general;
-  if (switches.specular) return shade_opaque;
-  if (switches.normals) return shade_matte;
-  return switches.bounces ? shade_flat_matte : shade_direct_flat_matte;
+ShadingLoop shading_loop(const Switches& switches) {
+  if (switches.reduced) return {"reduced", shade_reduced};
+  if (switches.transmission) return {"general", shade_general};
+  if (switches.specular) return {"opaque", shade_opaque};
+  if (switches.normals) return {"matte", shade_matte};
+  if (switches.bounces) return {"flat_matte", shade_flat_matte};
+  return {"direct_flat_matte", shade_direct_flat_matte};
 }
 
 }  // namespace raykiln::render

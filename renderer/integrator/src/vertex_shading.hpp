@@ -27,10 +27,14 @@ struct ShadingRange {
   std::span<const Hit> hits;
   std::size_t begin = 0, end = 0;
 };
-using ShadeRange = void (*)(const Transport&, const ShadingRange&, ShadingSinks&);
+/// An instance of the loop.
+struct ShadingLoop {
+  const char* name;
+  void (*run)(const Transport&, const ShadingRange&, ShadingSinks&);
+};
 
-/// The instance of the loop that is made for these switches. Chosen once a tile.
-[[nodiscard]] ShadeRange shading_loop(const Switches& switches);
+/// The instance that is made for these switches. Chosen once a tile.
+[[nodiscard]] ShadingLoop shading_loop(const Switches& switches);
 
 // The instances, each compiled by itself.
 void shade_general(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);

@@ -1,34 +1,16 @@
-#include <algorithm>
 #include <vector>
 
 #include "raykiln/render/render.hpp"
 
 namespace raykiln::render {
-namespace {
 
-/// From here on the share of views so flat that weights grow is below 1e-8: 1/exponent of them.
-constexpr double kSharpExponent = 1e8;
-
-/// One flag a material: does a triangle use it and does it reflect like a Phong lobe?
-std::vector<bool> specular_in_use(const Scene& scene) {
-  std::vector<bool> used(scene.materials.size(), false);
-  for (const std::uint32_t id : scene.mesh.material_ids) used[id] = true;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const Rgb& s = scene.materials[i].specular;
-    used[i] = used[i] && std::max({s.x, s.y, s.z}) > 0.0F;
-  }
-  return used;
-}
-
-}  // namespace
-
+// Of mirrors the share of views so flat that weights grow is below 1e-8: 1/exponent of them.
 std::vector<LightModelWarning> light_model_warnings(const LightModel& model, const Scene& scene) {
-  const std::vector<bool> specular = specular_in_use(scene);
   std::size_t broad = 0, refracting = 0;
-  for (std::size_t i = 0; i < specular.size(); ++i) {
-    if (!specular[i]) continue;
-    const Material& m = scene.materials[i];
-    broad += m.specular_exp < kSharpExponent ? 1U : 0U;
+  for (const std::uint32_t id : use_of(scene).materials) {
+    const Material& m = scene.materials[id];
+    if (is_black(m.specular)) continue;
+    broad += m.specular_exp < kMirrorExponent ? 1U : 0U;
     refracting += m.transparent > 0.0F && m.index_of_refraction != 1.0F ? 1U : 0U;
   }
   std::vector<LightModelWarning> warnings;

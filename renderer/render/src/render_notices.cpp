@@ -3,11 +3,10 @@
 #include <cstdio>
 
 #include "raykiln/render/render.hpp"
+#include "raykiln/sampling/warp.hpp"
 
 namespace raykiln::render {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Below this a leaf is as good as a tree, and nobody waits for it.
 constexpr double kFewTriangles = 32.0;
@@ -37,23 +36,17 @@ constexpr double kLeastShare = 1.0 / 16.0;
 // A lobe of exponent e fills the solid angle 2 pi / (e + 1); the mirror image of a point light is no
 // larger. Emitting triangles are found by the path's own rays and do not count.
 std::size_t unresolved_mirrors(const RenderSettings& settings, const Scene& scene) {
-  const bool lit = std::any_of(
-      scene.point_lights.begin(), scene.point_lights.end(),
-      [](const PointLight& light) { return light.intensity != Rgb(0.0F); });
-  if (!lit) return 0;
+  const SceneUse use = use_of(scene);
+  if (use.shining_point_lights == 0) return 0;
   const Camera& camera = settings.own_camera
                              ? *settings.own_camera
                              : scene.cameras[static_cast<std::size_t>(settings.camera)];
   const double least = kLeastShare * pixel_solid_angle(camera, settings.height);
-  std::vector<bool> used(scene.materials.size(), false);
-  for (const std::uint32_t id : scene.mesh.material_ids) used[id] = true;
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const Material& m = scene.materials[i];
-    const bool mirrors = used[i] && std::max({m.specular.x, m.specular.y, m.specular.z}) > 0.0F;
-    found += mirrors && 2.0 * kPi / (m.specular_exp + 1.0) < least ? 1U : 0U;
-  }
-  return found;
+  return static_cast<std::size_t>(
+      std::count_if(use.materials.begin(), use.materials.end(), [&](std::uint32_t id) {
+        const Material& m = scene.materials[id];
+        return !is_black(m.specular) && 2.0 * kPi / (m.specular_exp + 1.0) < least;
+      }));
 }
 
 }  // namespace

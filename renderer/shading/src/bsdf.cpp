@@ -12,8 +12,7 @@ namespace {
 /// Whether there may be a border and a far side; false is OpaqueBsdf.
 enum class Sides : bool { kNear, kBoth };
 
-/// The largest channel and not luminance: permuting the channels must not change a choice.
-double largest(const Rgbd& c) { return std::max({c.x, c.y, c.z, 0.0}); }
+double largest(const Rgb& c) { return static_cast<double>(std::max({c.x, c.y, c.z, 0.0F})); }
 
 /// Broad lobes mix directions of view with other reflectances than that of wo, so a choice that
 /// follows F(theta_o) to 0 would leave weights F(theta_i) / F(theta_o) without bound.
@@ -26,11 +25,9 @@ double reflected_share(const FresnelTerm& fresnel, double exponent) {
 }
 
 LobeChoice choose_lobes(const Material& material, double share) {
-  const double diffuse = largest(Rgbd(material.diffuse));
-  const double specular = largest(Rgbd(material.specular));
   const double transparent = static_cast<double>(material.transparent);
   LobeChoice choice;
-  if (diffuse + specular > 0.0) choice.specular = specular / (diffuse + specular);
+  choice.specular = specular_share(material.diffuse, material.specular).value_or(0.0);
   choice.diffuse_through = 0.5 * transparent;
   choice.specular_through = transparent * (1.0 - share);
   return choice;
@@ -175,7 +172,7 @@ void make(Bsdf& b, const Material& material, const Vec3f& ng, const Vec3f& ns, c
   b.diffuse_through = diffuse * (0.5 * transparent / kPi);
   b.specular_opaque = Rgbd(material.specular) * (1.0 - transparent);
   b.specular_transparent = Rgbd(material.specular) * transparent;
-  b.black = !(largest(diffuse) + largest(Rgbd(material.specular)) > 0.0);
+  b.black = !specular_share(material.diffuse, material.specular);
 
   const Vec3d n(b.n), w(wo);
   b.mirror = Vec3f(normalize(2.0 * b.cos_o * n - w));
@@ -218,6 +215,12 @@ DirectionNumbers numbers_of(const VertexKey& vertex) {
 }
 
 }  // namespace
+
+std::optional<double> specular_share(const Rgb& diffuse, const Rgb& specular) {
+  const double d = largest(diffuse), s = largest(specular);
+  if (!(d + s > 0.0)) return std::nullopt;
+  return s / (d + s);
+}
 
 Bsdf make_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns, const Vec3f& wo,
                const BsdfModel& model) {

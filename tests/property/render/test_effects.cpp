@@ -167,12 +167,12 @@ TEST_F(EachEffect, LeftOutByNameChangesItAsItsGradeSays) {
   room_.settings.max_depth = 24;
   const Mean full = mean_of(film(kAuto, 64));
   for (const EffectRow* row : effect_table()) {
-    if (row->forced == Grade::kUnbounded) continue;
+    if (row->grade == Grade::kUnbounded) continue;
     room_.settings.seed = 7 + static_cast<std::uint64_t>(row->effect);
     const Mean less = mean_of(film({EffectChoice::Mode::kAuto, {row->effect}}, 64));
     const double sigma = std::sqrt(full.variance + less.variance);
     EXPECT_LE(less.value, full.value + 4.0 * sigma) << row->name;
-    if (row->forced != Grade::kUnbiased) continue;
+    if (row->grade != Grade::kUnbiased) continue;
     EXPECT_GE(less.value, full.value - 4.0 * sigma) << row->name;
   }
 }

@@ -47,15 +47,22 @@ TEST(EffectPlan, WhatOnlyServesAnotherGoesWithIt) {
   EXPECT_FALSE(dark.simulated.contains(Effect::kPointLightShadows));
 }
 
-TEST(EffectPlan, HasAVerdictWithAReasonForEveryRow) {
+TEST(EffectPlan, HasAReasonForEveryRow) {
   for (const support::EffectScene& scene : support::named_effect_scenes()) {
     const EffectPlan p = plan(scene, "auto");
-    ASSERT_EQ(p.verdicts.size(), kEffects);
-    for (const EffectVerdict& v : p.verdicts) {
-      EXPECT_FALSE(v.evidence.empty()) << name(v.effect);
-      EXPECT_EQ(v.called_for, v.simulated) << name(v.effect);
+    for (const EffectRow* row : effect_table()) {
+      EXPECT_FALSE(p.evidence[static_cast<std::size_t>(row->effect)].empty()) << row->name;
     }
+    EXPECT_TRUE(p.called_for == p.simulated);
   }
+}
+
+TEST(EffectPlan, GradesWhatIsLeftOut) {
+  const EffectPlan cornell = plan(support::diffuse_cornell(), "without=roulette");
+  EXPECT_EQ(cornell.grade(Effect::kDiffuseReflection), std::nullopt);
+  EXPECT_EQ(cornell.grade(Effect::kRefraction), Grade::kIdentical);
+  EXPECT_EQ(cornell.grade(Effect::kRoulette), Grade::kUnbiased);
+  EXPECT_EQ(plan(support::diffuse_cornell(), "all").grade(Effect::kRefraction), std::nullopt);
 }
 
 }  // namespace

@@ -178,14 +178,26 @@ TEST(EffectRows, NormalsThatAreThoseOfThePlaneDoNotCallForInterpolation) {
   EXPECT_FALSE(black.calls_for(Effect::kShadingNormals));
 }
 
+TEST(SceneUse, NormalsThatNothingCallsForAreDropped) {
+  Case flat;
+  give_normals(flat, [](const Vec3f& ng) { return ng; });
+  drop_unused(flat.scene());
+  EXPECT_EQ(flat.scene().mesh.normals.capacity(), 0U);
+  EXPECT_EQ(flat.scene().mesh.corner_normals.capacity(), 0U);
+  Case turned;
+  give_normals(turned, [](const Vec3f& ng) { return -ng; });
+  const auto kept = turned.scene().mesh.normals;
+  drop_unused(turned.scene());
+  EXPECT_EQ(turned.scene().mesh.normals, kept);
+  EXPECT_EQ(turned.scene().mesh.corner_normals.size(), turned.scene().mesh.triangles.size());
+}
+
 TEST(EffectRows, EvidenceNamesWhatDecides) {
   Case c;
   c.material() = support::glass_material(1.5F, 1e10);
   c.material().name = "glass";
   const EffectPlan plan = c.plan();
-  const auto evidence = [&](Effect e) {
-    return plan.verdicts[static_cast<std::size_t>(e)].evidence;
-  };
+  const auto evidence = [&](Effect e) { return plan.evidence[static_cast<std::size_t>(e)]; };
   EXPECT_EQ(evidence(Effect::kRefraction), "material `glass`: specular and transparent 1");
   EXPECT_EQ(evidence(Effect::kFresnel), "material `glass`: index of refraction 1.5");
   EXPECT_EQ(evidence(Effect::kPointLights), "no point light has power above 0");

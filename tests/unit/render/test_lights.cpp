@@ -31,6 +31,14 @@ SceneBuilder floor_of(float albedo, float side = 10.0F) {
   return b;
 }
 
+TEST(Emitters, HaveNoTableWhereNothingShines) {
+  SceneBuilder b = floor_of(0.8F);
+  b.point_light({0, 0, 2}, Rgb(0.0F));
+  EXPECT_EQ(Emitters(b.scene()).bytes(), 0U);
+  b.point_light({0, 0, 2}, Rgb(1.0F));
+  EXPECT_GE(Emitters(b.scene()).bytes(), sizeof(PointLight));
+}
+
 // L = (a/pi) I h / (h^2 + r^2)^(3/2).
 TEST(PointLights, IrradianceOfAPlane) {
   SceneBuilder b = floor_of(0.8F);

@@ -7,27 +7,16 @@
 #include <optional>
 #include <string_view>
 
+#include "raykiln/effects/effect_list.hpp"
+
 namespace raykiln::render {
 
-/// In the order of the table. A new effect is one value here, one line in effect_table.cpp and one
-/// file with its EffectRow.
+/// One value a row of effect_list.hpp, in its order.
 enum class Effect : std::uint8_t {
-  kPointLights,
-  kPointLightShadows,
-  kAreaEmitters,
-  kEmitterSampling,
-  kBackground,
-  kDiffuseReflection,
-  kDiffuseTransmission,
-  kGlossyLobes,
-  kMirrors,
-  kRefraction,
-  kFresnel,
-  kShadingNormals,
-  kIndirectLight,
-  kCaustics,
-  kRoulette,
-  kCount
+#define RAYKILN_EFFECT_VALUE(code_name, name) k##code_name,
+  RAYKILN_EFFECTS(RAYKILN_EFFECT_VALUE)
+#undef RAYKILN_EFFECT_VALUE
+      kCount
 };
 inline constexpr std::size_t kEffects = static_cast<std::size_t>(Effect::kCount);
 

@@ -51,8 +51,9 @@ struct EffectRow {
   Effect effect;
   const char* name;
   const char* left_out;  ///< code, data and rays that are absent where it is not simulated
-  Grade grade;   ///< of leaving it out where it is not called for; auto leaves out kIdentical only
-  Grade forced;  ///< of leaving it out by name where it is called for
+  Grade grade;  ///< of leaving it out by name where it is called for
+  /// Says that the effect is not called for only where leaving it out is kIdentical: that is what
+  /// auto leaves out.
   Judgement (*judge)(const EffectView&);
   /// Adds what calls for the effect, where reflecting surfaces and light are there: tests draw
   /// their scenes with it, so that they know an effect as soon as it has a row.

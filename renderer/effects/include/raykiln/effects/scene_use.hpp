@@ -9,8 +9,12 @@
 
 namespace raykiln::render {
 
+/// No channel above 0.
+[[nodiscard]] inline bool is_black(const Rgb& c) {
+  return !(c.x > 0.0F || c.y > 0.0F || c.z > 0.0F);
+}
+
 struct SceneUse {
-  std::uint64_t triangles = 0;
   std::vector<std::uint32_t> materials;  ///< ids that a triangle has, ascending
   std::uint64_t shining_point_lights = 0;  ///< those with power above 0
   /// First triangle that reflects and whose normal, interpolated, may differ from that of its
@@ -20,5 +24,9 @@ struct SceneUse {
 
 /// O(triangles + materials + point lights). Once a scene: a plan is made for every tile.
 [[nodiscard]] SceneUse use_of(const Scene& scene);
+
+/// Frees what no job can make use of: normals that are nowhere interpolated to anything else than
+/// the plane's. Changes no picture.
+void drop_unused(Scene& scene);
 
 }  // namespace raykiln::render

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <stop_token>
+#include <string_view>
 
 #include "raykiln/accel/kdtree.hpp"
 #include "raykiln/effects/effect.hpp"
@@ -67,6 +68,10 @@ class PathTracer {
   /// it is polled before every call into the tree.
   [[nodiscard]] bool trace(std::span<const PathStart> starts, std::span<PathResult> results,
                            RenderStats& stats, const std::stop_token& stop);
+
+  /// The instance of the shading loop that runs: "general", "reduced", "opaque", "matte",
+  /// "flat_matte" or "direct_flat_matte".
+  [[nodiscard]] std::string_view shading_loop() const;
 
  private:
   struct Scratch;

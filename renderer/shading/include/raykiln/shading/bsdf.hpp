@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "raykiln/math/vec.hpp"
 #include "raykiln/sampling/random.hpp"
@@ -25,6 +26,10 @@ struct LobeChoice {
   double diffuse_through = 0.0;    ///< of a diffuse pick: goes to the other side
   double specular_through = 0.0;   ///< of a specular pick: refracted
 };
+
+/// Share of the specular lobe in what sampling picks: by the largest channels, which permuting the
+/// channels does not change. Nothing where both are black.
+[[nodiscard]] std::optional<double> specular_share(const Rgb& diffuse, const Rgb& specular);
 
 /// From here on a lobe is narrower than what a float direction can tell apart: a mirror, a clear border.
 inline constexpr double kLargestExponent = 1e15;

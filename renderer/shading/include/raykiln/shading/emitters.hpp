@@ -27,6 +27,12 @@ class Emitters {
   explicit Emitters(const Scene& scene);
 
   [[nodiscard]] bool has_triangles() const { return !distribution_.empty(); }
+  /// Of the tables; 0 where nothing shines.
+  [[nodiscard]] std::size_t bytes() const {
+    return triangles_.capacity() * sizeof(std::uint32_t) + distribution_.bytes() +
+           point_lights_.capacity() * sizeof(PointLight);
+  }
+
   [[nodiscard]] std::span<const PointLight> point_lights() const { return point_lights_; }
 
   /// Uses dimensions kLightChoice, kLightU and kLightV. Precondition: has_triangles().
