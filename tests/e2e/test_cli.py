@@ -235,7 +235,7 @@ def test_effects_says_what_is_simulated_and_why(folder, tmp_path):
     for picture, choice in zip(pictures, ("auto", "all", "without=diffuse_reflection")):
         done = raykiln("render", folder / "box.obj", "-o", picture, "--effects", choice, *words)
         assert done.returncode == 0, done.stderr
-    assert "lacks what the scene calls for" in done.stderr
+    assert "lacks what the scene calls for, on request: diffuse_reflection" in done.stderr
     same, also, draft = (picture.read_bytes() for picture in pictures)
     assert same == also and draft != same
     assert b"Deliberate approximation" in draft and b"Deliberate" not in same

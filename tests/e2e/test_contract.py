@@ -137,6 +137,10 @@ def replay_jobs(replay, scene) -> str:
     replay(*create, 202, json=request, headers=key)
     replay(*create, 409, json={**request, "seed": 1}, headers=key)
     replay(*create, 422, json={**request, "width": 0})
+    replay(*create, 422, json={**request, "effects": {"without": ["moire"]}})
+    draft = replay(*create, 202, json={**request, "effects": {"without": ["diffuse_reflection"]}}).json()["id"]
+    assert replay.api.wait(draft)["effects"]["approximation"]
+    replay("get", "/v1/jobs/{job}", 200, {"job": draft})
     replay(*create, 404, json={**request, "scene": "2" * 64})
     replay(*create, 400, data=b"{", headers=JSON)
     replay(*create, 415, data=b"{}", headers={"Content-Type": "text/plain"})

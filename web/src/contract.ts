@@ -29,8 +29,30 @@ export interface JobRequest {
   pixel_mode?: string;
   direction_sampling?: string;
   emitter_sampling?: boolean;
+  effects?: EffectChoice;
   tile?: number;
   priority?: number;
+}
+
+/** What of the scene's effects is simulated. */
+export type EffectChoice = string | { without: string[] };
+
+export interface EffectLine {
+  effect: string;
+  called_for: boolean;
+  simulated: boolean;
+  /** The material, light or setting that decides. */
+  evidence: string;
+  /** Of leaving it out; empty where it is simulated. */
+  grade: string;
+  left_out: string;
+}
+
+export interface EffectReport {
+  label: string;
+  /** Something that the scene calls for is left out. */
+  approximation: boolean;
+  list: EffectLine[];
 }
 
 /** RFC 9457 document, as in an answer or in a failed job. */
@@ -125,6 +147,8 @@ export interface Job {
   done_by?: "samples" | "seconds" | "error" | null;
   /** The completed job whose samples this one has taken over. */
   continues?: { job: string; samples: number } | null;
+  /** Null until the scene is read. */
+  effects?: EffectReport | null;
   warnings: Warning[];
   error: ProblemView | null;
   image: { revision: number; png: string; exr: string } | null;
@@ -143,6 +167,8 @@ export interface Scene {
   materials: number;
   lights: { point: number; emitting_triangles: number };
   cameras: { index: number; name: string }[];
+  /** Of a job with the default settings. */
+  effects?: EffectReport | null;
   warnings: Warning[];
   tree: Record<string, number> | null;
   cache: "absent" | "building" | "ready";

@@ -1,14 +1,15 @@
 // The job form: its fields, their defaults, and the way between the typed text
 // and a job request. Errors are placed at fields by their JSON pointer.
 
-import type { Job, JobRequest, OwnCamera, Vec3 } from "./contract";
+import type { EffectChoice, Job, JobRequest, OwnCamera, Vec3 } from "./contract";
 import type { FieldProblem } from "./problem";
 
 export type FormKey =
   | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
   | "width" | "height" | "samples" | "error" | "seconds" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
-  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | OverrideKey;
+  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling"
+  | "effects" | "without" | OverrideKey;
 
 /** Switches against the named light model; empty: as the model has it. */
 const kOverrides = ["phong", "fresnel", "radiance_scaling", "diffuse_sampling", "roulette"] as const;
@@ -16,6 +17,9 @@ type OverrideKey = (typeof kOverrides)[number];
 
 export type FormValues = Record<FormKey, string>;
 export type FormErrors = Partial<Record<FormKey, string>>;
+
+/** Value of the effects field that shows the list of what to leave out. */
+export const kWithout = "without";
 
 /** Value of the camera field that shows the fields of an own camera. */
 export const kOwnCamera = "own";
@@ -27,10 +31,11 @@ export const kDefaultForm: FormValues = {
   width: "640", height: "480", samples: "64", error: "", seconds: "", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
   light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true",
+  effects: "auto", without: "",
   phong: "", fresnel: "", radiance_scaling: "", diffuse_sampling: "", roulette: "",
 };
 
-type Kind = "scene" | "camera" | "integer" | "number" | "vector" | "text" | "choice";
+type Kind = "scene" | "camera" | "integer" | "number" | "vector" | "text" | "choice" | "effects";
 
 export interface FieldSpec {
   key: FormKey;
@@ -76,6 +81,9 @@ export const kFields: readonly FieldSpec[] = [
     choices: [["bsdf", "By the material"], ["uniform_sphere", "Uniform (reference)"]] },
   { key: "emitter_sampling", pointer: "/emitter_sampling", label: "Emitter sampling", hint: "", kind: "choice", group: "more",
     choices: [["true", "On"], ["false", "Off"]] },
+  { key: "effects", pointer: "/effects", label: "Effects", hint: "", kind: "choice", group: "more",
+    choices: [["auto", "What the scene calls for"], ["all", "All (same picture, more work)"], [kWithout, "Leave some out (approximation)…"]] },
+  { key: "without", pointer: "/effects/without", label: "Leave out", hint: "", kind: "effects", group: "more" },
   { key: "phong", pointer: "/light_model_overrides/phong", label: "Phong lobe over", hint: "", kind: "choice", group: "more",
     choices: [kAsModel, ["max", "The larger cosine"], ["over_cos_o", "The viewer's cosine"]] },
   { key: "fresnel", pointer: "/light_model_overrides/fresnel", label: "Fresnel", hint: "", kind: "choice", group: "more",
@@ -127,6 +135,7 @@ export function check_form(values: FormValues): FormErrors {
     const reason = fault(spec, values[spec.key]);
     if (reason) errors[spec.key] = reason;
   }
+  if (values.effects === kWithout && names(values.without).length === 0) errors.without = "Choose at least one effect.";
   if (!["samples", "error", "seconds"].some((key) => values[key as FormKey].trim() !== "")) {
     errors.samples = "Say when to stop: samples, an error target or a time limit.";
   }
@@ -159,10 +168,24 @@ export function to_request(values: FormValues): JobRequest {
     pixel_mode: values.pixel_mode,
     direction_sampling: values.direction_sampling,
     emitter_sampling: values.emitter_sampling === "true",
+    effects: values.effects === kWithout ? { without: names(values.without) } : values.effects,
     tile: number("tile"),
     priority: number("priority"),
   };
 }
+
+const names = (text: string): string[] => text.split(",").filter((name) => name !== "");
+
+/** The list `text` with or without `name`; the order is that of the choosing. */
+export function toggled(text: string, name: string, on: boolean): string {
+  return [...names(text).filter((other) => other !== name), ...(on ? [name] : [])].join(",");
+}
+
+export const is_chosen = (text: string, name: string): boolean => names(text).includes(name);
+
+/** As the settings of a job show it. */
+export const effects_text = (choice: EffectChoice): string =>
+  typeof choice === "string" ? choice : `without ${choice.without.join(", ")}`;
 
 function overrides(values: FormValues): Record<string, string | boolean> {
   const chosen = kOverrides.filter((key) => values[key] !== "");
@@ -200,6 +223,9 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   values.samples = samples === undefined || (other && samples === kMostSamples) ? "" : String(samples);
   values.error = error === undefined ? "" : String(Number((100 * error).toPrecision(12)));
   values.seconds = seconds === undefined ? "" : String(seconds);
+  const effects = request.effects ?? "auto";
+  values.effects = typeof effects === "string" ? effects : kWithout;
+  values.without = typeof effects === "string" ? "" : effects.without.join(",");
   const camera = request.camera;
   if (typeof camera === "number") values.camera = String(camera);
   if (typeof camera === "string") {

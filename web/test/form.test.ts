@@ -1,5 +1,5 @@
 import { describe, expect, test } from "vitest";
-import { check_form, from_job, kDefaultForm, kOwnCamera, place_errors, to_request, type FormValues } from "../src/form";
+import { check_form, from_job, kDefaultForm, kOwnCamera, place_errors, to_request, toggled, type FormValues } from "../src/form";
 import { job, kScene } from "./sample";
 
 const filled = (changes: Partial<FormValues> = {}): FormValues => ({ ...kDefaultForm, scene: kScene.id, ...changes });
@@ -35,6 +35,18 @@ describe("to_request and from_job", () => {
     expect(to_request(filled()).light_model_overrides).toEqual({});
   });
 
+  test("what is left out survives the round, and is sent only where it is asked for", () => {
+    const values = filled({ effects: "without", without: "refraction,caustics" });
+    const request = to_request(values);
+    expect(request.effects).toEqual({ without: ["refraction", "caustics"] });
+    expect(from_job(job({ request }), [])).toEqual(values);
+    expect(to_request(filled({ without: "refraction" })).effects).toBe("auto");
+    expect(from_job(job({ request: to_request(filled({ effects: "all" })) }), []).effects).toBe("all");
+    expect(check_form(filled({ effects: "without" }))).toEqual({ without: "Choose at least one effect." });
+    expect(toggled("a,b", "a", false)).toBe("b");
+    expect(toggled("b", "a", true)).toBe("b,a");
+  });
+
   test("an own camera survives the round", () => {
     const values = filled({ camera: kOwnCamera, eye: "1, 2;  3.5", look_at: "0 0 -1", fov_deg: "55" });
     const request = to_request(values);
@@ -65,6 +77,7 @@ describe("to_request and from_job", () => {
 test("errors stand at the nearest field", () => {
   expect(place_errors([
     { pointer: "/width", message: "a" }, { pointer: "/stop/sample", message: "b" }, { pointer: "/camera/eye/0", message: "c" },
-    { pointer: "/camera", message: "d" }, { pointer: "/light_model_overrides/fresnel", message: "f" }, { pointer: "/unknown", message: "e" }, { pointer: "/width", message: "second" },
-  ])).toEqual({ width: "a", samples: "b", eye: "c", camera: "d", fresnel: "f" });
+    { pointer: "/camera", message: "d" }, { pointer: "/light_model_overrides/fresnel", message: "f" },
+    { pointer: "/effects/without/1", message: "g" }, { pointer: "/unknown", message: "e" }, { pointer: "/width", message: "second" },
+  ])).toEqual({ width: "a", samples: "b", eye: "c", camera: "d", fresnel: "f", without: "g" });
 });

@@ -68,6 +68,7 @@ std::string image_key(const JobImage& image, const ImageQuery& query) {
 }
 
 std::map<std::string, std::string> exr_attributes(const JobImage& image, const std::string& version) {
+  const EffectReport& effects = image.effects;  // without lines in jobs of older versions
   return {{"raykiln:scene", image.scene},
           {"raykiln:job", image.job},
           {"raykiln:revision", std::to_string(image.revision)},
@@ -75,6 +76,8 @@ std::map<std::string, std::string> exr_attributes(const JobImage& image, const s
           {"raykiln:seed", std::to_string(image.request.seed)},
           {"raykiln:samples", shortest(image.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(image.request))},
+          {"raykiln:effects", effects.lines.empty() ? image.request.effects : effects.label},
+          {"raykiln:simulated", simulated_names(effects)},
           {"raykiln:seconds", shortest(image.render_seconds)},
           {"raykiln:planes", "error: standard error of the mean, radiance, NaN where unknown; samples: per pixel; seconds: of workers, per pixel"},
           {"raykiln:version", version}};
@@ -117,17 +120,18 @@ render::ValueRange map_range(const std::vector<float>& values, const std::string
 Result<std::string> encode(const JobImage& image, const ImageQuery& query,
                            const std::string& version) {
   std::variant<render::Bytes, render::EncodeError> encoded;
+  const std::string note = approximation_note(image.effects);
   const auto effort = image.is_final ? render::PngEffort::kSmall : render::PngEffort::kQuick;
   if (query.half) {
     encoded = encode_half(image, version);
   } else if (query.exr) {
     encoded = render::encode_exr(image.image, exr_attributes(image, version), planes_of(image, query.layer));
   } else if (query.layer == "beauty") {
-    encoded = render::encode_png(image.image, query.exposure_stops, {}, effort);
+    encoded = render::encode_png(image.image, query.exposure_stops, note, effort);
   } else {
     const auto values = map_values(image, query.layer);
     encoded = render::encode_png(render::false_colour(values, image.image.width, image.image.height,
-                                                      map_range(values, query.layer)), 0.0, {}, effort);
+                                                      map_range(values, query.layer)), 0.0, note, effort);
   }
   if (const auto* error = std::get_if<render::EncodeError>(&encoded)) {
     return Error{ErrorKind::kInternal, "internal", error->message, {}};

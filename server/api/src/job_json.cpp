@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "effects_json.hpp"
 #include "job_request_value.hpp"
 
 namespace raykiln::server {
@@ -149,6 +150,7 @@ Json job_value(const JobSnapshot& job) {
           {"accuracy", accuracy_value(job)},
           {"continues", continues_value(job)},
           {"done_by", job.done_by == DoneBy::kNone ? Json(nullptr) : Json(name(job.done_by))},
+          {"effects", effect_report_value(job.effects)},
           {"warnings", std::move(warnings)},
           {"error", error_value(job)},
           {"image", image_value(job)}};

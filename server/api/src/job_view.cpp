@@ -31,6 +31,10 @@ JobView view_of(const json& job) {
     view.remaining_seconds = left.get<double>();
   }
   view.rays_per_second = job.at("statistics").at("rays_per_second").get<double>();
+  const auto effects = job.find("effects");
+  if (effects != job.end() && effects->is_object() && effects->at("approximation").get<bool>()) {
+    view.approximation = effects->at("label").get<std::string>();
+  }
   view.has_image = !job.at("image").is_null();
   if (const json& prepare = job.at("prepare"); prepare.is_object()) {
     view.stage = prepare.at("stage").get<std::string>();

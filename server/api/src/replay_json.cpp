@@ -37,7 +37,8 @@ std::string replay_json(const ReplayView& replay) {
                           {"bounce_rays", replay.bounce_rays},
                           {"shadow_rays", replay.shadow_rays},
                           {"light_model", replay.light_model},
-                          {"seed", replay.seed}};
+                          {"seed", replay.seed},
+                          {"effects", replay.effects}};
   return json.dump();
 }
 
@@ -55,6 +56,7 @@ std::optional<ReplayView> parse_replay(std::string_view text) {
     view.shadow_rays = json.at("shadow_rays").get<std::uint64_t>();
     view.light_model = json.at("light_model").get<std::string>();
     view.seed = json.at("seed").get<std::uint64_t>();
+    view.effects = json.value("effects", "");
     return view;
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;

@@ -74,6 +74,7 @@ Answer Api::replay_sample(const Request& request) {
   view.shadow_rays = replayed.stats.shadow_rays;
   view.light_model = light_model_label(asked.light_model, asked.light_model_overrides);
   view.seed = asked.seed;
+  view.effects = inputs->effects.label;
   return json_response(200, replay_json(view));
 }
 

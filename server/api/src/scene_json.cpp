@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "effects_json.hpp"
 #include "raykiln/api/job_json.hpp"
 
 namespace raykiln::server {
@@ -62,6 +63,7 @@ Json scene_value(const SceneView& scene) {
           {"lights", {{"point", report.point_lights}, {"emitting_triangles", report.emissive_triangles}}},
           {"cameras", std::move(cameras)},
           {"bounds", {{"min", report.bounds_min}, {"max", report.bounds_max}}},
+          {"effects", effect_report_value(report.effects)},
           {"warnings", warnings_value(report)},
           {"tree", tree_value(scene.tree)},
           {"cache", name(scene.cache)},

@@ -4,6 +4,7 @@
 
 #include "raykiln/api/job_json.hpp"
 #include "raykiln/app/cli.hpp"
+#include "raykiln/effects/effect_choice.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -83,16 +84,16 @@ void complete_stops(const CLI::App& command, JobRequest& request) {
   if (stop.error && !stop.seconds) stop.seconds = kDefaultErrorSeconds;
 }
 
-void add_effects(CLI::App& command, PictureOptions& picture) {
+void add_effects(CLI::App& command, JobRequest& request) {
   command.add_option_function<std::string>(
       "--effects",
-      [&picture](const std::string& text) {
+      [&request](const std::string& text) {
         const auto choice = render::effect_choice_of(text);
         if (!choice) {
           throw CLI::ValidationError(
               "--effects is auto, all, or without= and names that `raykiln effects` lists");
         }
-        picture.effects = *choice;
+        request.effects = render::effect_choice_text(*choice);
       },
       "auto: what the scene calls for; all; or without=refraction,... (auto)");
 }
@@ -126,6 +127,7 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
                      "most reflections after the first hit (1024 with roulette, else 8)")
       ->check(CLI::Range(0, limits.max_depth));
   add_light_model(command, request);
+  add_effects(command, request);
   add_view(command, options, "WxH in pixels (640x480)");
   command.add_option("--tile", request.tile, "edge of a tile in pixels; changes no pixel")
       ->check(CLI::Range(1, limits.max_tile))
@@ -214,12 +216,10 @@ void add_commands(CLI::App& app, CliOptions& options) {
   auto* render = app.add_subcommand("render", "render a scene here, without a server");
   add_picture_options(*render, options);
   add_output(*render, options, true);
-  add_effects(*render, options.picture);
   render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
 
   auto* effects = app.add_subcommand("effects", "list what a scene calls for, what is simulated, and why");
   add_picture_options(*effects, options);
-  add_effects(*effects, options.picture);
 
   auto* lint = app.add_subcommand("lint", "report what is questionable about a scene");
   lint->add_option("SCENE", options.scene, kSceneFiles)->required();
@@ -228,7 +228,6 @@ void add_commands(CLI::App& app, CliOptions& options) {
   auto* replay = app.add_subcommand("replay", "render one sample of a job of the server, or of a scene, again and print it");
   add_picture_options(*replay, options,
                       "job id (the options of the picture are the job's then), or a scene");
-  add_effects(*replay, options.picture);
   replay->add_option("X", options.replay.x, "pixel column, from the left")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("Y", options.replay.y, "pixel row, from the top")->required()->check(CLI::NonNegativeNumber);
   replay->add_option("SAMPLE", options.replay.sample, "index of the sample, from 0")->required();

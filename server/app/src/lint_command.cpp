@@ -2,11 +2,9 @@
 #include <iostream>
 
 #include "json_text.hpp"
+#include "load_here.hpp"
 #include "raykiln/app/cli.hpp"
-#include "raykiln/app/scene_package.hpp"
 #include "raykiln/lint/lint.hpp"
-#include "raykiln/workers/import_files.hpp"
-#include "scratch.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -19,14 +17,7 @@ LintFinding as_finding(const Error& error) {
 }
 
 std::vector<LintFinding> findings_of(const std::filesystem::path& scene) {
-  const auto package = find_scene_files(scene);
-  if (!package) return {as_finding(package.error())};
-  const Scratch scratch;
-  UploadLimits limits;
-  limits.max_unpacked_bytes = UINT64_MAX;  // the user's own file
-  const auto imported = import_files(
-      package->kind, package->files, limits,
-      [&scratch] { return Result<std::filesystem::path>(scratch.path()); }, {});
+  const auto imported = import_here(scene);
   if (!imported) return {as_finding(imported.error())};
   if (const auto* refused = std::get_if<render::ImportError>(&*imported)) return {lint(*refused)};
   return lint(std::get<render::ImportedScene>(*imported));

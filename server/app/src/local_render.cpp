@@ -6,11 +6,12 @@
 #include <deque>
 #include <mutex>
 
+#include "load_here.hpp"
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/render/render.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
-#include "raykiln/workers/scene_intake.hpp"
+#include "raykiln/workers/effects.hpp"
 #include "raykiln/workers/tile_counts.hpp"
 
 namespace raykiln::server {
@@ -210,22 +211,15 @@ std::vector<JobWarning> warnings_of(const SceneReport& report) {
 }  // namespace
 
 Result<LocalPicture> render_locally(const ScenePackage& package, const JobRequest& request,
-                                    const render::EffectChoice& effects, LocalPool& pool,
-                                    const std::filesystem::path& scratch,
+                                    LocalPool& pool,
                                     const std::function<void(const ProgressState&)>& progress) {
   const auto begun = Steady::now();
   const auto since = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
   progress({.stage = "importing"});
-  // What the user's own machine holds needs no bound against strangers, only the importer's.
-  UploadLimits limits;
-  limits.max_unpacked_bytes = UINT64_MAX;
-  const auto intake = make_scene_intake(
-      limits, [&scratch] { return Result<std::filesystem::path>(scratch); });
-  auto loaded = intake->load(package.kind, package.files, {});
+  const auto loaded = load_here(package);
   if (!loaded) return loaded.error();
-  auto settings = render_settings(request, *loaded->scene);
+  const auto settings = render_settings(request, *loaded->scene);
   if (!settings) return settings.error();
-  settings->effects = effects;
 
   const auto build_begun = since();
   const auto runner = pool.task_runner(
@@ -255,14 +249,9 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   picture.job.statistics.tree_build_seconds = build_seconds;
   picture.job.elapsed_seconds = since();
   picture.job.warnings = warnings_of(loaded->report);
+  picture.job.effects = effect_report(render::effect_plan(*settings, *loaded->scene));
+  warn_of_approximation(picture.job.effects, picture.job.warnings);
   warn_of_light_model(*settings, *loaded->scene, picture.job.warnings);
-  picture.effects = render::effect_plan(*settings, *loaded->scene);
-  if (!picture.effects.approximated().empty()) {
-    picture.job.warnings.push_back({"deliberate_approximation",
-                                    "the picture lacks what the scene calls for: " +
-                                        render::effects_label(picture.effects),
-                                    "--effects"});
-  }
   warn_of_picture(*settings, *loaded->scene, tree_stats, picture.job.warnings);
   warn_of_missing_light(*settings, *prepared, picture.job.warnings);
   return picture;

@@ -24,6 +24,9 @@ ExitCode see_through(Remote& remote, const CliOptions& options, const std::strin
   const auto outcome = exit_code_for_state(end->state);
   if (options.json) std::cout << json << '\n';
   else if (!options.quiet) std::cerr << "job " << job << ' ' << end->state << '\n';
+  if (!end->approximation.empty()) {
+    std::cerr << "warning: deliberate approximation: effects " << end->approximation << '\n';
+  }
   if (!end->error.empty()) std::cerr << "raykiln: " << end->error << '\n';
   if (!options.outputs.empty() && end->has_image) {
     const auto fetched = fetch_pictures(remote, options, job);
@@ -175,7 +178,8 @@ ExitCode jobs_command(const CliOptions& options) {
       if (options.json) break;
       std::cout << std::left << std::setw(32) << job.id << std::setw(12) << job.state << std::right
                 << std::setw(4) << static_cast<int>(job.fraction * 100.0) << " %  "
-                << clean(job.name) << '\n';
+                << clean(job.name)
+                << (job.approximation.empty() ? "" : "  (approximation: " + job.approximation + ')') << '\n';
     }
     cursor = percent_encode(page->next_cursor);
   } while (!cursor.empty());

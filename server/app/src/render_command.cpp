@@ -4,7 +4,6 @@
 #include <iostream>
 
 #include "output_file.hpp"
-#include "scratch.hpp"
 #include "raykiln/api/job_json.hpp"
 #include "raykiln/app/cli.hpp"
 #include "raykiln/app/local_render.hpp"
@@ -29,7 +28,8 @@ std::map<std::string, std::string> attributes(const LocalPicture& picture, const
           {"raykiln:seed", std::to_string(job.request.seed)},
           {"raykiln:samples", std::to_string(job.progress.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(job.request))},
-          {"raykiln:effects", render::effects_label(picture.effects)},
+          {"raykiln:effects", job.effects.label},
+          {"raykiln:simulated", simulated_names(job.effects)},
           {"raykiln:seconds", std::to_string(job.elapsed_seconds)},
           {"raykiln:version", RAYKILN_VERSION}};
 }
@@ -63,17 +63,12 @@ void say_bad_samples(const CliOptions& options, const JobStatistics& statistics)
   }
 }
 
-/// A PNG says of itself when it is no picture of the whole scene.
-std::string png_note(const render::EffectPlan& plan) {
-  return plan.approximated().empty() ? "" : "Deliberate approximation: effects " + render::effects_label(plan);
-}
-
 ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
                         const std::string& scene) {
   for (const auto& output : options.outputs) {
     const auto encoded = output.extension() == ".png"
                              ? render::encode_png(picture.image, options.picture.exposure_stops,
-                                                  png_note(picture.effects))
+                                                  approximation_note(picture.job.effects))
                              : exr(options, picture, scene, output);
     std::optional<std::string> error;
     if (const auto* failure = std::get_if<render::EncodeError>(&encoded)) {
@@ -134,12 +129,11 @@ ExitCode render_command(const CliOptions& options) {
   request.scene = *scene;
   if (const auto valid = validate(request, JobLimits{}); !valid) return complain(valid.error());
 
-  const Scratch scratch;
   WorkerSettings workers;
   workers.threads = options.threads;
   LocalPool pool(workers);
   ProgressLine line(std::cerr, isatty(STDERR_FILENO) != 0, options.quiet);
-  auto picture = render_locally(*package, request, options.picture.effects, pool, scratch.path(),
+  auto picture = render_locally(*package, request, pool,
                                 [&line](const ProgressState& state) { line.show(state); });
   line.finish();
   if (!picture) return complain(picture.error());

@@ -4,13 +4,11 @@
 
 #include "raykiln/api/replay_json.hpp"
 #include "raykiln/app/cli.hpp"
-#include "raykiln/app/scene_package.hpp"
 #include "raykiln/base/ids.hpp"
 #include "raykiln/render/replay.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
-#include "raykiln/workers/scene_intake.hpp"
+#include "load_here.hpp"
 #include "remote.hpp"
-#include "scratch.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -33,7 +31,8 @@ void print(const ReplayView& sample, bool as_json) {
             << ": radiance " << number(r) << ' ' << number(g) << ' ' << number(b)
             << (sample.dropped ? ", dropped: not finite" : "")
             << (sample.truncated ? ", cut at the path limit" : "") << "; " << sample.bounce_rays
-            << " rays after the first, " << sample.shadow_rays << " shadow rays\n";
+            << " rays after the first, " << sample.shadow_rays << " shadow rays; effects: "
+            << sample.effects << '\n';
 }
 
 ExitCode complain(const Error& error) {
@@ -74,19 +73,11 @@ ExitCode replay_of_job(const CliOptions& options) {
 
 /// The sample as this program renders it.
 ExitCode replay_of_scene(const CliOptions& options) {
-  const auto package = find_scene_files(options.scene);
-  if (!package) return complain(package.error());
-  const Scratch scratch;
-  UploadLimits limits;
-  limits.max_unpacked_bytes = UINT64_MAX;  // the user's own file
-  const auto intake = make_scene_intake(
-      limits, [&scratch] { return Result<std::filesystem::path>(scratch.path()); });
-  const auto loaded = intake->load(package->kind, package->files, {});
+  const auto loaded = load_here(options.scene);
   if (!loaded) return complain(loaded.error());
   const JobRequest& request = options.picture.request;
-  auto settings = render_settings(request, *loaded->scene);
+  const auto settings = render_settings(request, *loaded->scene);
   if (!settings) return complain(settings.error());
-  settings->effects = options.picture.effects;
   const ReplayPlace& at = options.replay;
   if (at.x >= settings->width || at.y >= settings->height) {
     return complain({ErrorKind::kInvalid, "invalid_request", "the pixel lies outside the picture", ""});
@@ -97,7 +88,8 @@ ExitCode replay_of_scene(const CliOptions& options) {
   ReplayView view{at.x, at.y, at.sample, {replayed.radiance.x, replayed.radiance.y, replayed.radiance.z},
                   replayed.dropped, replayed.truncated, replayed.stats.bounce_rays,
                   replayed.stats.shadow_rays,
-                  light_model_label(request.light_model, request.light_model_overrides), request.seed};
+                  light_model_label(request.light_model, request.light_model_overrides), request.seed,
+                  render::effects_label(render::effect_plan(*settings, *scene))};
   print(view, options.json);
   return ExitCode::kOk;
 }

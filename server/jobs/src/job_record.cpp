@@ -193,6 +193,8 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   r.text("pixel_mode", name(q.pixel_mode));
   r.text("direction_sampling", name(q.direction_sampling));
   r.integer("emitter_sampling", q.emitter_sampling ? 1 : 0);
+  // Left out where it is the default: digests of requests stay those that older versions stored.
+  if (q.effects != JobRequest{}.effects) r.text("effects", q.effects);
 }
 
 JobRequest read_request(const RecordReader& r) {
@@ -217,6 +219,7 @@ JobRequest read_request(const RecordReader& r) {
   q.direction_sampling =
       direction_sampling_named(r.text("direction_sampling")).value_or(q.direction_sampling);
   q.emitter_sampling = r.integer("emitter_sampling", 1) != 0;
+  q.effects = r.text("effects", q.effects);
   return q;
 }
 
@@ -244,6 +247,7 @@ std::string encode_job(const JobSnapshot& job) {
   write_progress(r, job.progress);
   write_statistics(r, job.statistics);
   write_accuracy(r, job);
+  write_effects(r, job.effects);
   for (const JobWarning& warning : job.warnings) {
     r.text("warning.code", warning.code);
     r.text("warning.message", warning.message);
@@ -272,6 +276,7 @@ std::optional<JobSnapshot> decode_job(std::string_view text) {
   job.progress = read_progress(r);
   job.statistics = read_statistics(r);
   read_accuracy(r, job);
+  job.effects = read_effects(r);
   for (std::size_t i = 0; i < r.list("warning.code").size(); ++i) {
     job.warnings.push_back({text_at(r.list("warning.code"), i), text_at(r.list("warning.message"), i),
                             text_at(r.list("warning.where"), i)});

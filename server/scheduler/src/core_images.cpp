@@ -14,6 +14,7 @@ std::shared_ptr<JobImage> framed(const JobSnapshot& job) {
   image->is_final = is_final(job.state);
   image->scene = job.request.scene;
   image->request = job.request;
+  image->effects = job.effects;
   image->samples_per_pixel = job.progress.samples_per_pixel;
   image->render_seconds = job.statistics.render_seconds;
   return image;

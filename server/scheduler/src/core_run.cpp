@@ -7,6 +7,7 @@
 #include "image_layers.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
+#include "raykiln/workers/effects.hpp"
 #include "raykiln/workers/tile_counts.hpp"
 
 namespace raykiln::server {
@@ -123,6 +124,8 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   auto settings = render_settings(s.request, *scene.scene);
   if (!settings) return transition(job, JobEvent::kFail, settings.error());
   job.settings = *settings;
+  s.effects = effect_report(render::effect_plan(*settings, *scene.scene));
+  warn_of_approximation(s.effects, s.warnings);
   warn_of_light_model(*settings, *scene.scene, s.warnings);
   warn_of_picture(*settings, *scene.scene, scene.tree.stats, s.warnings);
   if (scene.prepared) warn_of_missing_light(*settings, *scene.prepared, s.warnings);

@@ -1,6 +1,7 @@
 // What clients ask about scenes.
 #include "core.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
+#include "raykiln/workers/effects.hpp"
 
 namespace raykiln::server {
 
@@ -142,7 +143,8 @@ void Scheduler::Core::replay_inputs(const JobId& id, const Reply<ReplayInputs>& 
   }
   auto settings = render_settings(request, *scene->scene);
   if (!settings) return reply(settings.error());
-  reply(ReplayInputs{scene->prepared, *settings});
+  reply(ReplayInputs{scene->prepared, *settings,
+                     effect_report(render::effect_plan(*settings, *scene->prepared))});
 }
 
 }  // namespace raykiln::server

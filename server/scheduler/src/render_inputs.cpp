@@ -90,6 +90,19 @@ void warn_of_light_model(const render::RenderSettings& settings, const render::S
   }
 }
 
+void warn_of_approximation(const EffectReport& report, std::vector<JobWarning>& warnings) {
+  std::string names;
+  for (const EffectLine& line : report.lines) {
+    if (!line.called_for || line.simulated) continue;
+    names += names.empty() ? "" : ", ";
+    names += line.name + " (" + line.grade + ')';
+  }
+  if (names.empty()) return;
+  add_once({"deliberate_approximation",
+            "the picture lacks what the scene calls for, on request: " + names, "/effects"},
+           warnings);
+}
+
 void warn_of_picture(const render::RenderSettings& settings, const render::Scene& scene,
                      const render::BuildStats& tree, std::vector<JobWarning>& warnings) {
   for (const auto& found : render::render_notices(settings, scene, tree)) {
@@ -140,6 +153,12 @@ Result<render::RenderSettings> render_settings(const JobRequest& request,
                                     ? render::DirectionSampling::kBsdf
                                     : render::DirectionSampling::kUniformSphere;
   settings.emitter_sampling = request.emitter_sampling;
+  const auto effects = render::effect_choice_of(request.effects);
+  if (!effects) {
+    // A job that an older version stored may name what is gone.
+    return Error{ErrorKind::kInvalid, "invalid_request", "there is no such effect", "/effects"};
+  }
+  settings.effects = *effects;
   if (const auto wrong = render::settings_error(settings, scene)) {
     return Error{ErrorKind::kInvalid, "invalid_request", *wrong, ""};
   }

@@ -1,5 +1,9 @@
 #include "import_errors.hpp"
 
+#include "raykiln/jobs/job_request.hpp"
+#include "raykiln/render/render.hpp"
+#include "raykiln/workers/effects.hpp"
+
 namespace raykiln::server {
 namespace {
 
@@ -50,6 +54,13 @@ std::uint64_t emissive_triangles(const render::Scene& scene) {
   return count;
 }
 
+/// What a job calls for that names no settings.
+EffectReport default_effects(const render::Scene& scene) {
+  render::RenderSettings settings;
+  settings.max_depth = depth_limit(JobRequest{});
+  return effect_report(render::effect_plan(settings, scene));
+}
+
 }  // namespace
 
 Error to_error(const render::ImportError& error) {
@@ -74,6 +85,7 @@ SceneReport to_report(const render::Scene& scene, const render::ImportReport& im
   for (const auto& camera : scene.cameras) report.cameras.push_back(camera.name);
   report.bounds_min = world(scene.origin, scene.bounds.lo);
   report.bounds_max = world(scene.origin, scene.bounds.hi);
+  report.effects = default_effects(scene);
   for (const render::ImportWarning& warning : imported.warnings) {
     report.warnings.push_back({std::string(name(warning.code)), warning.message, warning.file,
                                place(warning.file, warning.where), warning.count});

@@ -1,6 +1,7 @@
 #include "raykiln/workers/scene_intake.hpp"
 
 #include "import_errors.hpp"
+#include "raykiln/effects/scene_use.hpp"
 #include "raykiln/workers/import_files.hpp"
 
 namespace raykiln::server {
@@ -17,6 +18,7 @@ class FileIntake final : public SceneIntake {
     if (!result) return result.error();
     if (const auto* error = std::get_if<render::ImportError>(&*result)) return to_error(*error);
     auto& imported = std::get<render::ImportedScene>(*result);
+    render::drop_unused(imported.scene);
     SceneReport report = to_report(imported.scene, imported.report);
     return LoadedScene{std::make_shared<const render::Scene>(std::move(imported.scene)),
                        std::move(report)};

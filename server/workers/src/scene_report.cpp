@@ -47,6 +47,7 @@ std::string encode_report(const SceneReport& report) {
   for (const auto& camera : report.cameras) r.text("camera", camera);
   for (const double c : report.bounds_min) r.real("bounds_min", c);
   for (const double c : report.bounds_max) r.real("bounds_max", c);
+  write_effects(r, report.effects);
   for (const SceneWarning& warning : report.warnings) {
     r.text("warning.code", warning.code);
     r.text("warning.message", warning.message);
@@ -73,6 +74,7 @@ std::optional<SceneReport> decode_report(std::string_view text) {
   report.cameras = r.list("camera");
   report.bounds_min = read_point(r, "bounds_min");
   report.bounds_max = read_point(r, "bounds_max");
+  report.effects = read_effects(r);
   report.warnings = read_warnings(r);
   return report;
 }

@@ -9,6 +9,20 @@ import { encode_png, radiance } from "./png.mjs";
 
 const kTypes = { ".html": "text/html; charset=utf-8", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 const is_final = (job) => ["completed", "failed", "cancelled"].includes(job.state);
+/** What every scene of the mock calls for, less what is left out; a part of the daemon's list. */
+function effects_of(choice) {
+  const without = choice?.without ?? [];
+  const rows = [["point_lights", "1 point light with power above 0"], ["diffuse_reflection", "material `red`: diffuse 0.8 0.1 0.1"],
+    ["refraction", ""]];
+  const list = rows.map(([effect, evidence]) => {
+    const called_for = evidence !== "";
+    const simulated = choice === "all" || (called_for && !without.includes(effect));
+    return { effect, called_for, simulated, evidence: evidence || "no specular material in use is transparent",
+      grade: simulated ? "" : called_for ? "bounded" : "identical", left_out: simulated ? "" : `the code of ${effect}` };
+  });
+  const approximation = list.some((line) => line.called_for && !line.simulated);
+  return { label: without.length ? `without=${without.join(",")}` : choice ?? "auto", approximation, list };
+}
 const now = () => new Date().toISOString();
 
 export class Mock {
@@ -113,6 +127,7 @@ export class Mock {
       id, name: url.searchParams.get("name") ?? "", kind: names.length ? "files" : "zip", bytes: body.length, files: names,
       created_at: now(), triangles: 18432, dropped_triangles: 3, materials: 7, lights: { point: 1, emitting_triangles: 2 },
       cameras: [{ index: 0, name: "front" }, { index: 1, name: "from above" }],
+      effects: effects_of("auto"),
       bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, tree: null, cache: "absent",
       warnings: [{ code: "ignored_texture", message: "textures are not rendered yet; the factor is used", where: "box.mtl:12", count: 3 }],
     };
@@ -144,7 +159,7 @@ export class Mock {
       created_at: now(), started_at: null, finished_at: null, request, queue_position: 0, prepare: null,
       progress: { fraction: 0, samples_done: 0, samples_target: request.stop.samples, tiles_started: 0, tiles_done: 0, tiles_total: tiles },
       elapsed_seconds: 0, remaining_seconds: null,
-      statistics: { rays: 0, rays_per_second: 0, non_finite_samples: 0 }, warnings: [], error: null, image: null,
+      statistics: { rays: 0, rays_per_second: 0, non_finite_samples: 0 }, effects: null, warnings: [], error: null, image: null,
     };
     this.jobs.set(job.id, job);
     return job;
@@ -179,7 +194,7 @@ export class Mock {
       } else if (job.state === "preparing" && age > 0.35) {
         if (job.name.includes("fail")) {
           this.finish(job, "failed", { error: { type: "about:blank#render_failed", title: "Rendering failed", status: 500, code: "render_failed", detail: "out of memory while building the tree" } });
-        } else this.change(job, { state: "rendering", prepare: null });
+        } else this.change(job, { state: "rendering", prepare: null, effects: effects_of(job.request.effects) });
       } else if (job.state === "rendering") this.advance(job);
     }
   }

@@ -88,6 +88,41 @@ export const kPageTests = [
     assert.match(await page.locator(".panel .facts").first().innerText(), /8 \/ 8/);
   })],
 
+  ["the effects of a scene have reasons, and what is left out by keyboard marks the job", with_tab(async (page) => {
+    await upload(page, box_files("effects"));
+    const of_scene = page.locator("form .effects-fold");
+    await of_scene.locator("summary").focus();
+    await page.keyboard.press("Enter");
+    const line = (list, effect) => list.locator(`li[data-effect="${effect}"]`);
+    assert.match(await line(of_scene, "point_lights").innerText(), /simulated[\s\S]*1 point light with power above 0/);
+    assert.match(await line(of_scene, "refraction").innerText(), /left out[\s\S]*transparent[\s\S]*the picture is the same/);
+    await fill(page, kSmall);
+    await page.getByText("More settings").click();
+    await page.locator("#field-effects").focus();
+    await page.keyboard.press("End");
+    assert.equal(await page.locator("#field-effects").inputValue(), "without");
+    await page.getByRole("button", { name: "Render", exact: true }).click();
+    await page.getByText("Choose at least one effect.").waitFor();
+    assert.match(await page.evaluate(() => document.activeElement?.id), /^without-/);
+    assert.deepEqual(await label_faults(page), []);
+    for (let step = 0; step < 20; step += 1) {
+      if ((await page.evaluate(() => document.activeElement?.id)) === "without-diffuse_reflection") break;
+      await page.keyboard.press("Tab");
+    }
+    await page.keyboard.press("Space");
+    await page.keyboard.press("Enter");
+    await page.waitForURL(/\/jobs\//);
+    await state_is(page, "completed");
+    await page.locator(".panel .mark", { hasText: "approximation" }).waitFor();
+    const of_job = page.locator(".panel .effects-fold");
+    assert.match(await of_job.locator("summary").innerText(), /approximation/);
+    assert.match(await line(of_job, "diffuse_reflection").innerText(), /left out on request[\s\S]*the picture is another one/);
+    assert.match(await page.locator(".stage canvas").getAttribute("aria-label"), /deliberate approximation/);
+    await page.getByRole("button", { name: "Render again" }).click();
+    assert.equal(await page.locator("#field-effects").inputValue(), "without");
+    assert.equal(await page.locator("#without-diffuse_reflection").isChecked(), true);
+  })],
+
   ["the picture appears and is not black", with_tab(async (page, url) => {
     await page.goto(`${url}/jobs/${await done_job(url)}`);
     await picture(page);

@@ -55,6 +55,7 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.pixel_mode = PixelMode::kCentre;
   request.direction_sampling = DirectionSampling::kUniformSphere;
   request.emitter_sampling = false;
+  request.effects = "without=refraction,roulette";
   request.light_model = LightModel::kSeed;
   request.light_model_overrides = {PhongDivisor::kMax, FresnelFormula::kSchlick, false, std::nullopt, true};
   for (const CameraChoice& camera : {CameraChoice{7}, CameraChoice{std::string("front")}, request.camera}) {
@@ -98,7 +99,42 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/camera", {{"eye", {0, 0}}, {"look_at", {0, 0, 0}}}, "/camera/eye wrong_type");
   check("/camera", {{"eye", {0, 0, 0}}, {"look_at", {0, 0, 1}}, {"fov_deg", 180}}, "/camera/fov_deg out_of_range");
   check("/emitter_sampling", 1, "/emitter_sampling wrong_type");
+  check("/effects", "none", "/effects invalid_value");
+  check("/effects", "without=refraction", "/effects invalid_value");
+  check("/effects", 3, "/effects wrong_type");
+  check("/effects", nullptr, "/effects wrong_type");
+  check("/effects", json::object(), "/effects/without missing_field");
+  check("/effects", {{"without", {"refraction"}}, {"with", 1}}, "/effects/with unknown_field");
+  check("/effects", {{"without", json::array()}}, "/effects/without wrong_type");
+  check("/effects", {{"without", "refraction"}}, "/effects/without wrong_type");
+  check("/effects", {{"without", std::vector<std::string>(50, "fresnel")}}, "/effects/without wrong_type");
+  check("/effects", {{"without", {"refraction", "moire"}}}, "/effects/without/1 invalid_value");
+  check("/effects", {{"without", {"refraction", 7}}}, "/effects/without/1 invalid_value");
+  check("/effects", {{"without", {"fresnel", "fresnel"}}}, "/effects/without/1 invalid_value");
   EXPECT_EQ(errors_of("{}").size(), 4U);
+}
+
+TEST(JobRequestJson, EffectsHaveOneSpelling) {
+  const auto effects_of = [](const json& value) {
+    json body = smallest();
+    body["effects"] = value;
+    const auto parsed = parse_job_request(body.dump(), JobLimits{});
+    return std::get<JobRequest>(parsed).effects;
+  };
+  EXPECT_EQ(effects_of("auto"), JobRequest{}.effects);
+  EXPECT_EQ(effects_of("all"), "all");
+  EXPECT_EQ(effects_of({{"without", {"roulette", "refraction"}}}), "without=refraction,roulette");
+}
+
+TEST(JobRequestJson, AnUnknownEffectIsAnsweredWithThoseThatThereAre) {
+  json body = smallest();
+  body["effects"] = {{"without", {"moire"}}};
+  const auto parsed = parse_job_request(body.dump(), JobLimits{});
+  const auto& problem = std::get<Problem>(parsed);
+  EXPECT_EQ(problem.status, 422);
+  for (const char* name : {"refraction", "point_lights", "roulette"}) {
+    EXPECT_NE(problem.errors.at(0).detail.find(name), std::string::npos) << problem.errors[0].detail;
+  }
 }
 
 TEST(JobRequestJson, TakesWholeNumbersThatAreWrittenWithAPoint) {
@@ -115,6 +151,29 @@ TEST(JobRequestJson, RefusesWhatIsNoJson) {
   EXPECT_EQ(errors_of(std::string(50000, '[')), std::vector<std::string>{"invalid_json"});
   const auto twice = errors_of("{\"width\":1,\"width\":2," + smallest().dump().substr(1));
   EXPECT_EQ(twice.front(), "/width duplicate_field");
+}
+
+EffectReport draft_report() {
+  return {"without=refraction (refraction bounded)",
+          {{"refraction", true, false, "material `glass`: transparent 1", "bounded", "refracted directions"},
+           {"background", true, true, "background 1 1 1", "", ""}}};
+}
+
+TEST(JobJson, SaysWhatIsSimulatedAndWhy) {
+  JobSnapshot job;
+  EXPECT_EQ(json::parse(job_json(job))["effects"], nullptr);
+  EXPECT_EQ(parse_job_view(job_json(job))->approximation, "");
+  job.effects = draft_report();
+  const json effects = json::parse(job_json(job))["effects"];
+  EXPECT_EQ(effects["approximation"], true);
+  EXPECT_EQ(effects["list"][0],
+            (json{{"effect", "refraction"},
+                  {"called_for", true},
+                  {"simulated", false},
+                  {"evidence", "material `glass`: transparent 1"},
+                  {"grade", "bounded"},
+                  {"left_out", "refracted directions"}}));
+  EXPECT_EQ(parse_job_view(job_json(job))->approximation, "without=refraction (refraction bounded)");
 }
 
 JobSnapshot snapshot() {

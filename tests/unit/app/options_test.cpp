@@ -57,9 +57,9 @@ TEST(CliOptions, ReadsStops) {
 TEST(CliOptions, ReadsEffects) {
   const auto parsed = cli({"effects", "a.obj", "--effects", "without=roulette,refraction"});
   ASSERT_EQ(parsed.exit_code, -1);
-  EXPECT_EQ(render::effect_choice_text(parsed.options.picture.effects), "without=refraction,roulette");
-  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--effects", "all"}).options.picture.effects.mode,
-            render::EffectChoice::Mode::kAll);
+  EXPECT_EQ(parsed.options.picture.request.effects, "without=refraction,roulette");
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--effects", "all"}).options.picture.request.effects, "all");
+  EXPECT_EQ(cli({"submit", "a.obj", "--effects", "all"}).options.picture.request.effects, "all");
   EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--effects", "some"}).exit_code, 2);
 }
 

@@ -55,6 +55,16 @@ TEST(JobRequest, DigestTellsRequestsApart) {
   EXPECT_NE(request_digest(good()), request_digest(other)) << "a name is not an index";
 }
 
+TEST(JobRecord, OfAnOlderVersionHasTheDefaultEffects) {
+  JobSnapshot job;
+  job.id = "j_1";
+  job.request = good();
+  std::string text = encode_job(job);
+  ASSERT_EQ(text.find("effect"), std::string::npos);
+  EXPECT_EQ(decode_job(text)->request.effects, "auto");
+  EXPECT_TRUE(decode_job(text)->effects.lines.empty());
+}
+
 TEST(JobRecord, ReadsBack) {
   JobSnapshot job;
   job.id = "j_1";
@@ -76,10 +86,20 @@ TEST(JobRecord, ReadsBack) {
   job.progress.samples_done = 99;
   job.warnings = {{"a", "b", "c"}, {"d", "", ""}};
   job.error = Error{ErrorKind::kInternal, "render_failed", "why", "where"};
+  job.request.effects = "without=refraction";
+  job.effects = {"without=refraction (refraction bounded)",
+                 {{"refraction", true, false, "material `a\nb`: transparent 1", "bounded", "code"},
+                  {"mirrors", false, false, "none", "identical", "mirror lobes"}}};
   const auto back = decode_job(encode_job(job));
   ASSERT_TRUE(back);
   EXPECT_EQ(encode_job(*back), encode_job(job));
   EXPECT_EQ(request_digest(back->request), request_digest(job.request));
+  EXPECT_EQ(back->request.effects, "without=refraction");
+  EXPECT_EQ(back->effects.label, job.effects.label);
+  EXPECT_EQ(back->effects.lines.at(0).evidence, "material `a\nb`: transparent 1");
+  EXPECT_TRUE(back->effects.lines.at(0).called_for && !back->effects.lines.at(0).simulated);
+  EXPECT_TRUE(is_approximation(back->effects));
+  EXPECT_EQ(back->effects.lines.at(1).left_out, "mirror lobes");
   EXPECT_EQ(back->error->message, "why");
   EXPECT_EQ(back->statistics.bad_samples.at(1).sample, 6U);
   EXPECT_EQ(back->statistics.roulette_ends, 5U);

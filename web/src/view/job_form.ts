@@ -1,11 +1,12 @@
 // The form for a new job. Inputs show the state; errors stand at their fields.
 
 import { scene_title, type Scene } from "../contract";
-import { kFields, kOwnCamera, type FieldSpec, type FormKey } from "../form";
+import { kFields, kOwnCamera, kWithout, type FieldSpec, type FormKey } from "../form";
 import { bytes, count } from "../format";
 import type { State } from "../state";
 import type { Commands } from "./commands";
 import { Facts, h, set_attribute, set_hidden, set_text } from "./dom";
+import { EffectList, EffectPicker } from "./effects";
 import { WarningList } from "./warnings";
 
 type Control = HTMLInputElement | HTMLSelectElement;
@@ -58,6 +59,8 @@ export class JobForm {
   private more_ = h("div", { class: "fields" });
   private details_ = h("details", {}, h("summary", {}, "More settings"), this.more_);
   private report_ = new Facts();
+  private effects_ = new EffectList();
+  private picker_: EffectPicker;
   private warnings_ = new WarningList();
   private problem_ = h("p", { class: "problem", role: "alert", hidden: true });
   private submit_ = h("button", { type: "submit", class: "primary" }, "Render");
@@ -65,12 +68,17 @@ export class JobForm {
 
   constructor(commands: Commands) {
     const main = h("div", { class: "fields" });
+    this.picker_ = new EffectPicker((value) => commands.set_field("without", value));
     for (const spec of kFields) {
+      if (spec.kind === "effects") {
+        this.more_.append(this.picker_.element);
+        continue;
+      }
       const field = new Field(spec, commands);
       this.fields_.set(spec.key, field);
       const group = { main, camera: this.own_camera_, more: this.more_ }[spec.group];
       group.append(field.element);
-      if (spec.key === "scene") main.append(this.report_.element, this.warnings_.element);
+      if (spec.key === "scene") main.append(this.report_.element, this.effects_.element, this.warnings_.element);
       if (spec.key === "camera") main.append(this.own_camera_);
     }
     this.element = h("form", { novalidate: true, "aria-label": "New render" },
@@ -88,7 +96,9 @@ export class JobForm {
   /** Moves to the first field with an error, opening what hides it. */
   focus_error(): void {
     const bad = [...this.fields_.values()].find((field) => field.control.hasAttribute("aria-invalid"));
-    if (bad?.spec.group === "more") this.details_.open = true;
+    const of_picker = !bad && this.picker_.element.hasAttribute("aria-invalid");
+    if (bad?.spec.group === "more" || of_picker) this.details_.open = true;
+    if (of_picker) this.picker_.focus();
     bad?.control.focus();
   }
 
@@ -100,6 +110,9 @@ export class JobForm {
       field.update(state.form[key], state.form_errors[key] ?? "");
     }
     set_hidden(this.own_camera_, state.form.camera !== kOwnCamera);
+    this.picker_.update(state.form.without, state.form_errors.without ?? "", Object.values(state.scenes), scene);
+    set_hidden(this.picker_.element, state.form.effects !== kWithout);
+    this.effects_.update(scene?.effects);
     this.report_.update(scene ? report(scene) : [], ["Lights"]);
     set_hidden(this.report_.element, !scene);
     this.warnings_.update(scene?.warnings ?? []);

@@ -67,6 +67,7 @@ function chip_text(job: Job): string {
 function meta(state: State, job: Job): string {
   const { width, height } = job.request;
   const parts = [`${width} × ${height}`, `${count(job.progress.samples_target)} spp`];
+  if (job.effects?.approximation) parts.push("approximation");
   if (job.state === "queued" && job.queue_position) parts.push(`${job.queue_position} ahead`);
   else if (is_final(job.state)) {
     if (job.started_at) parts.push(duration(job.elapsed_seconds));

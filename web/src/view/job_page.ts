@@ -3,11 +3,13 @@
 import { image_url } from "../api";
 import { is_final, job_title, kLayers, type Job, type Layer } from "../contract";
 import { count, duration, error_percent, label_of, percent, ray_rate, si, statistic, stops } from "../format";
+import { effects_text } from "../form";
 import { remedy_of } from "../problem";
 import { since_heard, type State } from "../state";
 import type { Commands } from "./commands";
 import { CurveView } from "./curve";
 import { Facts, h, set_attribute, set_hidden, set_text } from "./dom";
+import { EffectList } from "./effects";
 import { report } from "./job_form";
 import { Picture } from "./picture";
 import { PriceView } from "./price";
@@ -50,6 +52,8 @@ export class JobPage {
   private price_: PriceView;
   private scale_ = h("span", { class: "hint scale" });
   private statistics_ = new Facts();
+  private effects_ = new EffectList();
+  private approximation_ = h("span", { class: "mark", hidden: true }, "approximation");
   private settings_ = new Facts();
   private scene_ = new Facts();
   private content_ = h("div", { class: "job" });
@@ -87,13 +91,14 @@ export class JobPage {
     const fold = (name: string, facts: Facts, open: boolean): HTMLElement =>
       h("details", { open }, h("summary", {}, name), facts.element);
     return h("aside", { class: "panel", "aria-label": "Job" },
-      h("header", {}, this.title_, this.chip_),
+      h("header", {}, this.title_, this.chip_, this.approximation_),
       h("div", { class: "meter" }, this.bar_, this.bar_text_),
       this.failure_, this.figures_.element,
       h("div", { class: "row actions" }, this.cancel_, this.again_),
       this.command_problem_, this.downloads_, this.warnings_.element,
       this.curve_.element, this.price_.element,
       fold("Statistics", this.statistics_, true),
+      this.effects_.element,
       fold("Settings", this.settings_, false),
       fold("Scene", this.scene_, false));
   }
@@ -146,8 +151,12 @@ export class JobPage {
     set_text(this.chip_, job.state);
     set_attribute(this.chip_, "data-state", job.state);
     this.picture.expect(job.request.width, job.request.height);
+    const approximation = job.effects?.approximation === true;
     this.picture.describe(
-      `Picture of ${title}, ${percent(job.progress.fraction)} rendered`, waiting_text(job));
+      `Picture of ${title}, ${percent(job.progress.fraction)} rendered${approximation ? ", deliberate approximation" : ""}`,
+      waiting_text(job));
+    set_hidden(this.approximation_, !approximation);
+    this.effects_.update(job.effects);
     this.meter(job);
     this.figures_.update(figures(state, job));
     this.failure(job);
@@ -300,7 +309,7 @@ function replay_rows(job: Job): [string, string][] {
 }
 
 function setting_rows(job: Job): [string, string][] {
-  const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, ...rest } = job.request;
+  const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, effects, ...rest } = job.request;
   const rows: [string, string][] = [];
   if (stop.samples !== undefined) rows.push(["Samples at most", count(stop.samples)]);
   if (stop.error !== undefined) rows.push(["Error target", error_percent(stop.error)]);
@@ -308,6 +317,7 @@ function setting_rows(job: Job): [string, string][] {
   rows.push(["Camera", typeof camera === "object" ? "own" : String(camera ?? 0)]);
   for (const [key, value] of Object.entries(overrides ?? {})) rows.push([label_of(key), statistic(key, value)]);
   for (const [key, value] of Object.entries(rest)) rows.push([label_of(key), statistic(key === "seed" ? "" : key, value)]);
+  if (effects !== undefined) rows.push(["Effects", effects_text(effects)]);
   rows.push(["Job", job.id]);
   if (job.continues) rows.push(["Continues", `${job.continues.job}, ${count(job.continues.samples)} samples taken over`]);
   return rows;

@@ -3,15 +3,13 @@
 #include <chrono>
 #include <iostream>
 
+#include "../load_here.hpp"
 #include "../output_file.hpp"
-#include "../scratch.hpp"
 #include "accuracy_report.hpp"
 #include "raykiln/app/cli.hpp"
 #include "raykiln/app/progress.hpp"
-#include "raykiln/app/scene_package.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/local_pool.hpp"
-#include "raykiln/workers/scene_intake.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -50,14 +48,7 @@ ExitCode accuracy_command(const CliOptions& options) {
     std::cerr << "raykiln: --size: at most " << render::kMostStudyPixels << " pixels, such as 256x256\n";
     return ExitCode::kUsage;
   }
-  const auto package = find_scene_files(options.scene);
-  if (!package) return complain(package.error());
-  const Scratch scratch;
-  UploadLimits limits;
-  limits.max_unpacked_bytes = UINT64_MAX;  // the user's own file
-  const auto intake = make_scene_intake(
-      limits, [&scratch] { return Result<std::filesystem::path>(scratch.path()); });
-  const auto loaded = intake->load(package->kind, package->files, {});
+  const auto loaded = load_here(options.scene);
   if (!loaded) return complain(loaded.error());
   const auto view = render_settings(request, *loaded->scene);
   if (!view) return complain(view.error());

@@ -2,7 +2,6 @@
 #include <iostream>
 #include <unistd.h>
 
-#include "../scratch.hpp"
 #include "batch_judge.hpp"
 #include "batch_progress.hpp"
 #include "batch_run.hpp"
@@ -28,8 +27,7 @@ Result<std::vector<std::uint8_t>> render_one(const PlannedPicture& planned, Loca
   result.scene = *scene;
   JobRequest request = planned.request;
   request.scene = *scene;
-  const Scratch scratch;
-  auto picture = render_locally(*package, request, {}, pool, scratch.path(), progress);
+  auto picture = render_locally(*package, request, pool, progress);
   if (!picture) return picture.error();
   result.seconds = picture->job.statistics.render_seconds;
   result.samples = picture->job.progress.samples_per_pixel;

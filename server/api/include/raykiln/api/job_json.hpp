@@ -55,6 +55,7 @@ struct JobView {
   double elapsed_seconds = 0.0;
   std::optional<double> remaining_seconds;
   double rays_per_second = 0.0;
+  std::string approximation;  ///< empty, or the label of effects that lack what the scene calls for
   bool has_image = false;
   std::string error;  ///< empty, or "code: detail (where)"
 };

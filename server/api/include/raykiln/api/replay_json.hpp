@@ -19,6 +19,7 @@ struct ReplayView {
   std::uint64_t bounce_rays = 0, shadow_rays = 0;
   std::string light_model;           ///< with its overrides
   std::uint64_t seed = 0;
+  std::string effects;               ///< label, as pictures carry it
 };
 
 /// On one line. A channel that is not finite is the string "nan", "inf" or "-inf".

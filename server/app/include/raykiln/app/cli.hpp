@@ -9,7 +9,6 @@
 
 #include "raykiln/app/comparison.hpp"
 #include "raykiln/app/exit_code.hpp"
-#include "raykiln/effects/effect_choice.hpp"
 #include "raykiln/jobs/job_request.hpp"
 
 namespace raykiln::server {
@@ -19,7 +18,6 @@ struct PictureOptions {
   JobRequest request;  ///< without the scene
   std::string camera;  ///< name or index; empty: the first
   double exposure_stops = 0.0;
-  render::EffectChoice effects;  ///< what is rendered here; jobs of a server simulate what is called for
   bool half = false;  ///< EXR in half floats
 };
 

@@ -7,7 +7,6 @@
 
 #include "raykiln/app/progress.hpp"
 #include "raykiln/app/scene_package.hpp"
-#include "raykiln/effects/effect_plan.hpp"
 #include "raykiln/image/film.hpp"
 #include "raykiln/jobs/job_snapshot.hpp"
 #include "raykiln/workers/local_pool.hpp"
@@ -16,17 +15,15 @@ namespace raykiln::server {
 
 struct LocalPicture {
   render::Image image;
-  render::EffectPlan effects;  ///< what was simulated, and why
   std::vector<float> error, samples;  ///< standard errors (3 a pixel), samples (1 a pixel)
   JobSnapshot job;  ///< completed, with statistics and warnings; its id is empty
 };
 
 /// Errors: those of the intake (the scene is wrong), "invalid_request" (settings, camera), and
-/// "worker_failed". `scratch`: an existing folder for unpacking.
+/// "worker_failed".
 [[nodiscard]] Result<LocalPicture> render_locally(
-    const ScenePackage& package, const JobRequest& request, const render::EffectChoice& effects,
-    LocalPool& pool,
-    const std::filesystem::path& scratch, const std::function<void(const ProgressState&)>& progress);
+    const ScenePackage& package, const JobRequest& request, LocalPool& pool,
+    const std::function<void(const ProgressState&)>& progress);
 
 /// The picture and its noise as EXR, with what made it as attributes. Errors: "internal".
 [[nodiscard]] Result<std::vector<std::uint8_t>> local_exr(const LocalPicture& picture, const std::string& scene);

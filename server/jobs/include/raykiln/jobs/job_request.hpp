@@ -57,6 +57,9 @@ struct JobRequest {
   PixelMode pixel_mode = PixelMode::kRandom;
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;
+  /// "auto", "all" or "without=refraction,roulette": which effects are simulated. The names are the
+  /// renderer's; whoever reads a request from outside checks them.
+  std::string effects = "auto";
 };
 
 [[nodiscard]] std::string_view name(PixelMode value);

@@ -10,6 +10,7 @@
 
 #include "raykiln/base/clock.hpp"
 #include "raykiln/base/result.hpp"
+#include "raykiln/jobs/effect_report.hpp"
 #include "raykiln/jobs/forecast.hpp"
 #include "raykiln/jobs/job_request.hpp"
 #include "raykiln/jobs/job_state.hpp"
@@ -114,6 +115,7 @@ struct JobSnapshot {
   std::vector<std::uint64_t> tile_samples;     ///< where tiles differ in the end; else empty
   JobId continues{};                           ///< the job whose samples it goes on from; empty: none
   double continued_samples = 0.0;              ///< a pixel, taken over from it; 0: it began anew
+  EffectReport effects;                        ///< from the moment when the scene is known
   std::vector<JobWarning> warnings;            ///< of the scene, and of this job
   std::optional<Error> error{};                 ///< when failed
 };

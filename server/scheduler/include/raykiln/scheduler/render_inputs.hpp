@@ -24,6 +24,9 @@ namespace raykiln::server {
 void warn_of_light_model(const render::RenderSettings& settings, const render::Scene& scene,
                          std::vector<JobWarning>& warnings);
 
+/// Adds "deliberate_approximation" at "/effects" where something that the scene calls for is left out.
+void warn_of_approximation(const EffectReport& report, std::vector<JobWarning>& warnings);
+
 /// Adds what the tree and the sampling cannot help ("tree_no_benefit", "unresolved_sharp_highlight");
 /// nothing that is there already.
 void warn_of_picture(const render::RenderSettings& settings, const render::Scene& scene,

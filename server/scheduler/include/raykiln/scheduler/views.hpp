@@ -76,6 +76,7 @@ struct JobImage {
   std::vector<float> error, samples, seconds;
   std::string scene;           ///< scene id
   JobRequest request;
+  EffectReport effects;        ///< of the job
   double samples_per_pixel = 0.0;
   double render_seconds = 0.0;
 };
@@ -85,6 +86,7 @@ using JobImagePtr = std::shared_ptr<const JobImage>;
 struct ReplayInputs {
   std::shared_ptr<const render::PreparedScene> scene;
   render::RenderSettings settings;
+  EffectReport effects;
 };
 
 struct SchedulerStatus {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "raykiln/jobs/effect_report.hpp"
+
 namespace raykiln::server {
 
 struct SceneWarning {
@@ -29,6 +31,7 @@ struct SceneReport {
   std::uint64_t emissive_triangles = 0;
   std::vector<std::string> cameras;     ///< names in the order of the scene; never empty
   std::array<double, 3> bounds_min{}, bounds_max{};  ///< metres, world space
+  EffectReport effects;  ///< of a job with the default settings; none in reports of older versions
   std::vector<SceneWarning> warnings;
 };
 
