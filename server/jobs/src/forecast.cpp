@@ -67,15 +67,17 @@ std::optional<TimeRange> seconds_to_error(const std::vector<CurvePoint>& curve, 
   const CurvePoint& now = curve.back();
   const SlopeFit fit = weighed_slope(curve);
   const double way = std::log(now.error.value / error), beta = std::max(0.05, -fit.slope);
-  // The error now and the error then are both estimates of that spread.
   const double of_error = std::log(now.error.high / now.error.low) / (2.0 * kNormal95) / beta;
   const double of_slope = way * fit.standard_error / (beta * beta);
   const double of_speed = kSpeedSpread * std::min(1.0, std::abs(way));
   const double wide = basis == Basis::kMeasured ? 1.0 : kTailWidening;
   const double of_estimates = of_error * (basis == Basis::kRough ? wide : 1.0);
-  const double spread = kNormal90 * std::sqrt(2.0 * of_estimates * of_estimates +
-                                              wide * wide * (of_slope * of_slope + of_speed * of_speed));
   const double value = now.render_seconds * std::exp(way / beta);
+  // Of k times the samples 1/k are those of now: the estimates differ with 1 + 1/k - 2/k of its variance,
+  // and with 1/k + 1 - 2 where k < 1.
+  const double apart = std::abs(1.0 - now.render_seconds / value);
+  const double spread = kNormal90 * std::sqrt(apart * of_estimates * of_estimates +
+                                              wide * wide * (of_slope * of_slope + of_speed * of_speed));
   return TimeRange{value, value * std::exp(-spread), value * std::exp(spread)};
 }
 

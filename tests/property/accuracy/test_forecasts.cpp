@@ -80,8 +80,8 @@ class Rooms : public ::testing::TestWithParam<Room> {};
 
 TEST_P(Rooms, ForecastsHold) {
   if (!GetParam().ordinary && !long_run()) GTEST_SKIP() << "RAYKILN_LONG=1";
-  const int seeds = long_run() ? 40 : 6;
-  const std::uint64_t end = long_run() ? 2048 : 576;
+  const int seeds = long_run() ? 12 : 6;
+  const std::uint64_t end = long_run() ? 1088 : 576;
   const auto scene = GetParam().scene().prepare();
   double hits = 0, scored = 0, wide = 0, late = 0, tails = 0;
   for (int seed = 0; seed < seeds; ++seed) {
