@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
+#include <span>
 
 #include "tracing.hpp"
 
@@ -15,12 +17,26 @@ constexpr double kWorthSaying = 1e-3;  ///< of the picture's light
 constexpr double kCertain = 3.0;       ///< standard errors
 constexpr double kRuleOfThree = 3.0;   ///< 0 events in n trials bound the rate by 3/n at 95 %
 
-/// Sample 0, 1, ... of pixels spread evenly over the picture.
+/// Pairs between two looks at what has been spent, and the most: steps and blocks of the tree, which
+/// take tens of nanoseconds each. Where no split of a tree pays, one ray tests every triangle.
+constexpr std::size_t kPairsAtOnce = 8;
+constexpr std::uint64_t kMostWork = 20'000'000;
+
+/// The numbers below n, each next one far from those before.
+std::vector<std::uint64_t> scattered(std::uint64_t n) {
+  std::uint64_t step = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(0.618 * static_cast<double>(n)));
+  while (std::gcd(step, n) != 1) ++step;
+  std::vector<std::uint64_t> order;
+  for (std::uint64_t i = 0; i < n; ++i) order.push_back(i * step % n);
+  return order;
+}
+
+/// Sample 0, 1, ... of pixels spread evenly over the picture, also if only the first few are used.
 std::vector<PathStart> spread(const RenderSettings& settings, std::uint64_t probes) {
   const auto width = static_cast<std::uint64_t>(settings.width);
   const std::uint64_t pixels = width * static_cast<std::uint64_t>(settings.height);
   std::vector<PathStart> starts;
-  for (std::uint64_t i = 0; i < probes; ++i) {
+  for (const std::uint64_t i : scattered(probes)) {
     const std::uint64_t pixel =
         probes < pixels ? static_cast<std::uint64_t>(static_cast<double>(i) * static_cast<double>(pixels) /
                                                      static_cast<double>(probes))
@@ -30,36 +46,51 @@ std::vector<PathStart> spread(const RenderSettings& settings, std::uint64_t prob
   return starts;
 }
 
-std::vector<double> means_of_channels(const PreparedScene& scene, const RenderSettings& settings,
-                                      const std::vector<PathStart>& starts) {
-  const CameraRays camera = camera_rays(scene, settings);
-  PathTracer tracer({scene.scene(), scene.tree(), scene.emitters()}, camera, path_settings(scene, settings));
-  std::vector<PathResult> paths(starts.size());
-  RenderStats stats;
-  static_cast<void>(tracer.trace(starts, paths, stats, {}));  // never stopped: few
-  std::vector<double> means;
-  for (const PathResult& path : paths) {
-    const Rgbd radiance = path.radiance();
-    const double mean = (radiance.x + radiance.y + radiance.z) / 3.0;
-    means.push_back(std::isfinite(mean) ? mean : 0.0);  // dropped from pictures too
+/// Traces some of the pairs' samples by one of two settings.
+class Probe {
+ public:
+  Probe(const PreparedScene& scene, const RenderSettings& settings)
+      : tracer_({scene.scene(), scene.tree(), scene.emitters()}, camera_rays(scene, settings),
+                path_settings(scene, settings)) {}
+
+  /// Appends a mean over the channels for each start.
+  void trace(std::span<const PathStart> starts, std::vector<double>& means) {
+    std::vector<PathResult> paths(starts.size());
+    static_cast<void>(tracer_.trace(starts, paths, stats_, {}));  // never stopped: few
+    for (const PathResult& path : paths) {
+      const Rgbd radiance = path.radiance();
+      const double mean = (radiance.x + radiance.y + radiance.z) / 3.0;
+      means.push_back(std::isfinite(mean) ? mean : 0.0);  // dropped from pictures too
+    }
   }
-  return means;
-}
+  [[nodiscard]] std::uint64_t work() const { return stats_.traversal.node_steps + stats_.traversal.block_tests; }
+
+ private:
+  PathTracer tracer_;
+  RenderStats stats_;
+};
 
 MissingLight compare(const PreparedScene& scene, const RenderSettings& settings,
                      const RenderSettings& whole, std::uint64_t probes) {
-  MissingLight result{.probes = probes};
   if (probes < 2) return {};
   const std::vector<PathStart> starts = spread(settings, probes);
-  const auto lacking = means_of_channels(scene, settings, starts), full = means_of_channels(scene, whole, starts);
-  const auto n = static_cast<double>(probes);
-  for (std::size_t i = 0; i < starts.size(); ++i) {
+  Probe some(scene, settings), all(scene, whole);
+  std::vector<double> lacking, full;
+  for (std::size_t at = 0; at < starts.size() && some.work() + all.work() < kMostWork; at += kPairsAtOnce) {
+    const auto part = std::span(starts).subspan(at, std::min(kPairsAtOnce, starts.size() - at));
+    some.trace(part, lacking);
+    all.trace(part, full);
+  }
+  if (full.size() < 2) return {};
+  MissingLight result{.probes = full.size()};
+  const auto n = static_cast<double>(full.size());
+  for (std::size_t i = 0; i < full.size(); ++i) {
     result.differing += full[i] != lacking[i] ? 1U : 0U;
     result.mean += full[i] / n;
     result.missing += (full[i] - lacking[i]) / n;
   }
   double squares = 0.0;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
+  for (std::size_t i = 0; i < full.size(); ++i) {
     const double deviation = full[i] - lacking[i] - result.missing;
     squares += deviation * deviation;
   }

@@ -106,6 +106,8 @@ class Scheduler::Core {
   void start_preparing(LiveJob& job);
   void prepared(const JobId& id, Result<ReadyScene> scene);
   void start_rendering(LiveJob& job, ReadyScene scene);
+  void look_for_missing_light(const JobId& id, const render::RenderSettings& settings,
+                              std::shared_ptr<const render::PreparedScene> scene);
   void dispatch();
   void dispatch_one(LiveJob& job);
   void finished_task(TileOutcome outcome);

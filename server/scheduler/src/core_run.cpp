@@ -128,7 +128,7 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   warn_of_approximation(s.effects, s.warnings);
   warn_of_light_model(*settings, *scene.scene, s.warnings);
   warn_of_picture(*settings, *scene.scene, scene.tree.stats, s.warnings);
-  if (scene.prepared) warn_of_missing_light(*settings, *scene.prepared, s.warnings);
+  look_for_missing_light(s.id, *settings, scene.prepared);
   s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
   job.scene = std::move(scene);
   job.blocks = render::blocks_for(s.request.stop.samples);
@@ -150,6 +150,27 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   transition(job, JobEvent::kPrepared);
   shares_.join(s.id, s.request.priority);
   begin_stops(job);
+}
+
+/// Tells light that samples never bring. Found out where it holds up nobody who waits for this strand.
+void Scheduler::Core::look_for_missing_light(const JobId& id, const render::RenderSettings& settings,
+                                             std::shared_ptr<const render::PreparedScene> scene) {
+  if (!scene) return;
+  disk_.post([this, id, settings, scene] {
+    std::vector<JobWarning> found;
+    try {
+      warn_of_missing_light(settings, *scene, found);
+    } catch (const std::exception& fault) {
+      parts_.log.warn("missing_light_not_judged", {{"job", id}, {"why", fault.what()}});
+    }
+    if (found.empty()) return;
+    post([this, id, found] {
+      LiveJob* job = find(id);
+      if (job == nullptr) return;
+      job->snapshot.warnings.insert(job->snapshot.warnings.end(), found.begin(), found.end());
+      publish_soon(*job);
+    });
+  });
 }
 
 /// Keeps as many tasks waiting as run, so that no worker waits for this strand.

@@ -19,7 +19,8 @@ struct MissingLight {
   [[nodiscard]] double share_error() const { return mean > 0.0 ? standard_error / mean : 0.0; }
 };
 
-/// Pairs that settings allow: as many as about 1e5 rays pay for, 1024 at most.
+/// Pairs that settings allow: as many as about 1e5 rays pay for, 1024 at most. Fewer are traced where rays
+/// are dear, so that all of it takes a fraction of a second.
 [[nodiscard]] std::uint64_t affordable_probes(const PreparedScene& scene, const RenderSettings& settings);
 
 /// What the limit of the paths' length cuts off: the other sample goes on and is ended by roulette.
