@@ -10,10 +10,12 @@
 
 namespace raykiln::render::support {
 
-/// Where the object of row `i` stands: on a grid over the floor, in view.
+/// Where the object of row `i` stands: on a grid over the floor, in view; from the 17th on under the
+/// ceiling.
 inline Vec3f place_of(std::size_t i) {
   const auto column = static_cast<float>(i % 4), row = static_cast<float>(i / 4 % 4);
-  return {-0.9F + 0.48F * column, -0.9F + 0.1F * row, -0.8F + 0.42F * row};
+  const float up = i < 16 ? 0.0F : 1.2F;
+  return {-0.9F + 0.48F * column, -0.9F + 0.1F * row + up, -0.8F + 0.42F * row};
 }
 
 /// A matte room, open towards the camera, with a box for every effect of `wanted`, whose material

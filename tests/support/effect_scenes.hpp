@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "raykiln/effects/effect_plan.hpp"
 #include "support/scene_pieces.hpp"
 
 namespace raykiln::render::support {
@@ -84,7 +85,7 @@ inline EffectScene diffuse_cornell() {
   return s;
 }
 
-/// Every effect: the mixed room with a sky, a translucent sheet and a smooth ball.
+/// Every effect of the seed: the mixed room with a sky, a translucent sheet and a smooth ball.
 inline EffectScene everything() {
   EffectScene s{"everything", mixed_room(), {}};
   SceneBuilder& b = s.builder;
@@ -95,6 +96,24 @@ inline EffectScene everything() {
          translucent);
   add_ball(b, {-0.45F, -0.6F, 0.35F}, 0.3F, 24, b.material(diffuse_material(Rgb(0.6F))), true);
   b.scene().background = {0.1F, 0.15F, 0.2F};
+  return s;
+}
+
+/// All rows of the table: the room above with what it lacks.
+inline EffectScene complete() {
+  EffectScene s = everything();
+  s.name = "complete";
+  EffectJob job;
+  for (const EffectRow* row : effect_table()) {
+    if (effect_plan(s.settings, s.builder.scene()).called_for.contains(row->effect)) continue;
+    const auto material = s.builder.material({});
+    const auto i = static_cast<float>(row->effect);
+    const Vec3f at(-0.9F + 0.1F * i, 0.5F, -0.9F);
+    s.builder.box(at, at + Vec3f(0.09F, 0.2F, 0.2F), material);
+    TriangleMesh& mesh = s.builder.scene().mesh;
+    mesh.corner_normals.resize(mesh.triangles.size(), {kNoNormal, kNoNormal, kNoNormal});
+    row->provoke({s.builder.scene(), job, material});
+  }
   return s;
 }
 

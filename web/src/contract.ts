@@ -165,7 +165,13 @@ export interface Scene {
   /** Of zero area. */
   dropped_triangles?: number;
   materials: number;
-  lights: { point: number; emitting_triangles: number };
+  lights: {
+    point: number;
+    spot?: number;
+    directional?: number;
+    environment?: boolean;
+    emitting_triangles: number;
+  };
   cameras: { index: number; name: string }[];
   /** Of a job with the default settings. */
   effects?: EffectReport | null;

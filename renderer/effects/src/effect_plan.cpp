@@ -6,8 +6,11 @@ namespace {
 /// An effect that only serves another goes with it.
 EffectSet what_is_left(EffectSet called_for, EffectSet without) {
   EffectSet left = called_for - without;
-  if (!left.contains(Effect::kPointLights)) left.erase(Effect::kPointLightShadows);
-  if (!left.contains(Effect::kAreaEmitters)) left.erase(Effect::kEmitterSampling);
+  constexpr EffectSet kUnfindable{Effect::kPointLights, Effect::kSpotLights,
+                                  Effect::kDirectionalLights};
+  constexpr EffectSet kSampled{Effect::kAreaEmitters, Effect::kEnvironment};
+  if (!left.contains_any(kUnfindable)) left.erase(Effect::kPointLightShadows);
+  if (!left.contains_any(kSampled)) left.erase(Effect::kEmitterSampling);
   return left;
 }
 

@@ -5,11 +5,7 @@ namespace raykiln::render {
 namespace {
 
 Judgement judge(const EffectView& view) {
-  const std::uint64_t lights = view.use.shining_point_lights;
-  if (lights == 0) return {false, "no point light has power above 0"};
-  if (reflecting_material(view) == nullptr) return {false, "no surface reflects"};
-  return {true, std::to_string(lights) + (lights == 1 ? " point light" : " point lights") +
-                    " with power above 0"};
+  return of_lights(view, view.use.shining_point_lights, "point light");
 }
 
 void provoke(const EffectExample& at) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raykiln/scene/environment_map.hpp"
 #include "sources.hpp"
 
 namespace raykiln::render {
@@ -31,14 +32,27 @@ bool is_flat(const TriangleMesh& mesh, std::uint32_t id) {
   return true;
 }
 
+template <class Light>
+std::uint64_t shining(const std::vector<Light>& lights, Rgb Light::*power) {
+  return static_cast<std::uint64_t>(
+      std::count_if(lights.begin(), lights.end(),
+                    [power](const Light& light) { return !is_black(light.*power); }));
+}
+
+bool shines(const EnvironmentMap& map) {
+  return std::any_of(map.rgb.begin(), map.rgb.end(), [](float value) { return value > 0.0F; });
+}
+
 }  // namespace
 
 SceneUse use_of(const Scene& scene) {
   const TriangleMesh& mesh = scene.mesh;
   SceneUse use;
-  use.shining_point_lights = static_cast<std::uint64_t>(
-      std::count_if(scene.point_lights.begin(), scene.point_lights.end(),
-                    [](const PointLight& l) { return !is_black(l.intensity); }));
+  use.shining_point_lights = shining(scene.point_lights, &PointLight::intensity);
+  use.shining_spot_lights = shining(scene.spot_lights, &SpotLight::intensity);
+  use.shining_directional_lights =
+      shining(scene.directional_lights, &DirectionalLight::irradiance);
+  use.environment_shines = scene.environment != nullptr && shines(*scene.environment);
   std::vector<bool> used(scene.materials.size(), false);
   for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id) {
     const std::uint32_t material = mesh.material_ids[id];

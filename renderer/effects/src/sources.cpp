@@ -41,15 +41,23 @@ const Material* reflecting_material(const EffectView& view) {
 }
 
 bool has_light(const EffectView& view) {
-  return !is_black(view.scene.background) || emitting_material(view) != nullptr ||
-         view.use.shining_point_lights > 0;
+  return !is_black(view.scene.background) || view.use.environment_shines ||
+         emitting_material(view) != nullptr || view.use.lights_without_surface() > 0;
 }
 
 bool reaches_two_surfaces(const EffectView& view) {
   if (reflecting_material(view) == nullptr) return false;
-  if (view.job.max_depth >= 1 && view.use.shining_point_lights > 0) return true;
+  if (view.job.max_depth >= 1 && view.use.lights_without_surface() > 0) return true;
   return view.job.max_depth >= 2 &&
-         (!is_black(view.scene.background) || emitting_material(view) != nullptr);
+         (!is_black(view.scene.background) || view.use.environment_shines ||
+          emitting_material(view) != nullptr);
+}
+
+Judgement of_lights(const EffectView& view, std::uint64_t count, const std::string& kind) {
+  if (count == 0) return {false, "no " + kind + " has power above 0"};
+  if (reflecting_material(view) == nullptr) return {false, "no surface reflects"};
+  return {true, std::to_string(count) + ' ' + kind + (count == 1 ? "" : "s") +
+                    " with power above 0"};
 }
 
 std::string says(const Material& material, const char* field, double value) {

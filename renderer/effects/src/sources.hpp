@@ -25,11 +25,11 @@ const Material* find_material(const EffectView& view, Predicate&& holds) {
 [[nodiscard]] const Material* emitting_material(const EffectView& view);
 [[nodiscard]] const Material* reflecting_material(const EffectView& view);
 
-/// Is there any light at all, from point lights, emitters or the background?
+/// Is there any light at all, from lights without a surface, emitters, background or environment?
 [[nodiscard]] bool has_light(const EffectView& view);
 
-/// Can light reach the camera by way of two surfaces? Point lights add at every hit, emitters and
-/// background where a further ray finds them.
+/// Can light reach the camera by way of two surfaces? Lights without a surface add at every hit,
+/// emitters, background and environment where a further ray finds them.
 [[nodiscard]] bool reaches_two_surfaces(const EffectView& view);
 
 /// "material `glass`", its name cut to 60 bytes.
@@ -38,6 +38,10 @@ const Material* find_material(const EffectView& view, Predicate&& holds) {
 [[nodiscard]] std::string says(const Material& material, const char* field, double value);
 [[nodiscard]] std::string says(const Material& material, const char* field, const Rgb& value);
 [[nodiscard]] std::string text(const Rgb& value);
+
+/// Verdict of an effect of `count` shining lights of a kind: "point light".
+[[nodiscard]] Judgement of_lights(const EffectView& view, std::uint64_t count,
+                                  const std::string& kind);
 
 /// Verdict of an effect of surfaces: called for by `material` where there is light at all.
 [[nodiscard]] Judgement of_surface(const EffectView& view, const Material* material,

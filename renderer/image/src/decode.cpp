@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "colour_channels.hpp"
 #include "png_chunks.hpp"
 #include "raykiln/image/display.hpp"
 
@@ -18,36 +19,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kExr{0x76, 0x2F, 0x31, 0x01};
 constexpr std::array<std::uint8_t, 4> kPng{0x89, 'P', 'N', 'G'};
 
-using Names = std::vector<std::string>;
-
-std::optional<std::size_t> position(const Names& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - names.begin());
-}
-
-std::optional<std::array<std::size_t, 3>> triple(const Names& names, const std::string& layer) {
-  const auto r = position(names, layer + "R"), g = position(names, layer + "G"), b = position(names, layer + "B");
-  if (!r || !g || !b) return std::nullopt;
-  return std::array<std::size_t, 3>{*r, *g, *b};
-}
-
-/// Channels of the picture proper; nothing when the file has no colour that could be meant.
-std::optional<std::array<std::size_t, 3>> colour_channels(const Names& names) {
-  if (auto plain = triple(names, "")) return plain;
-  for (const std::string& name : names) {
-    const bool red = name.size() > 2 && name.ends_with(".R");
-    if (!red) continue;
-    if (auto layer = triple(names, name.substr(0, name.size() - 1))) return layer;
-  }
-  const bool grey = names.size() == 1 || (names.size() == 2 && position(names, "A"));
-  if (grey) {
-    const std::size_t only = names.size() == 2 && names.front() == "A" ? 1 : 0;
-    return std::array<std::size_t, 3>{only, only, only};
-  }
-  if (const auto y = position(names, "Y")) return std::array<std::size_t, 3>{*y, *y, *y};
-  return std::nullopt;
-}
+using Names = ChannelNames;
 
 std::vector<float> gather(const std::vector<float>& values, std::size_t channels,
                           std::span<const std::size_t> wanted) {
@@ -88,9 +60,9 @@ DecodedImage arrange(const OIIO::ImageSpec& spec, const std::vector<float>& valu
   DecodedImage decoded;
   decoded.image = {.width = spec.width, .height = spec.height, .rgb = gather(values, channels, colour)};
   decoded.attributes = own_attributes(spec);
-  if (const auto error = triple(names, "error.")) decoded.error = gather(values, channels, *error);
+  if (const auto error = channel_triple(names, "error.")) decoded.error = gather(values, channels, *error);
   for (const char* name : {"samples", "samples.Y"}) {
-    const auto samples = position(names, name);
+    const auto samples = channel_position(names, name);
     if (samples && decoded.samples.empty()) decoded.samples = gather(values, channels, {{*samples}});
   }
   return decoded;

@@ -140,7 +140,9 @@ bool PathTracer::trace(std::span<const PathStart> starts, std::span<PathResult> 
   scratch.front.clear();
   scratch.shadows.clear();
   std::fill(results.begin(), results.end(), PathResult{});
-  if (bounds(scratch.transport.tree).empty() || !scratch.transport.has_light) {
+  const bool no_surface =
+      bounds(scratch.transport.tree).empty() && scratch.transport.environment == nullptr;
+  if (no_surface || !scratch.transport.has_light) {
     fill_with_background(results, scratch.transport.background);
     stats.paths += starts.size();
     return !stop.stop_requested();

@@ -23,8 +23,12 @@ void ShadowQueue::push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const 
                        std::uint32_t slot) {
   Ray ray;
   ray.o = from;
-  ray.d = to - from;
-  ray.t_max = end == ShadowEnd::kSurface ? kBeforeSurface : kBeforePointLight;
+  if (end == ShadowEnd::kInfinity) {
+    ray.d = to;
+  } else {
+    ray.d = to - from;
+    ray.t_max = end == ShadowEnd::kSurface ? kBeforeSurface : kBeforePointLight;
+  }
   rays_.push_back(ray);
   waiting_.push_back({light, slot});
 }

@@ -14,6 +14,7 @@ namespace raykiln::render {
 enum class ShadowEnd : std::uint8_t {
   kSurface,     ///< the ray_end() of a point on a surface
   kPointLight,  ///< the place of a light itself
+  kInfinity,    ///< a direction instead of a place: nothing may be in the way at all
 };
 
 class ShadowQueue {
@@ -23,7 +24,7 @@ class ShadowQueue {
 
   [[nodiscard]] bool full() const { return rays_.size() >= kCapacity; }
 
-  /// A ray from `from`, which is clear of its surface, to `to`.
+  /// A ray from `from`, which is clear of its surface, to `to`; with kInfinity along `to`.
   void push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const Rgbd& light,
             std::uint32_t slot);
 

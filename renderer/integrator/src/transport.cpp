@@ -5,15 +5,20 @@
 namespace raykiln::render {
 namespace {
 
-constexpr EffectSet kSources{Effect::kPointLights, Effect::kAreaEmitters, Effect::kBackground};
+constexpr EffectSet kSources{Effect::kPointLights,       Effect::kSpotLights,
+                             Effect::kDirectionalLights, Effect::kAreaEmitters,
+                             Effect::kBackground,        Effect::kEnvironment};
 
 /// Effects that are no more than a value in the settings or the data.
-constexpr EffectSet kFolded{Effect::kPointLights, Effect::kEmitterSampling, Effect::kBackground,
-                            Effect::kFresnel,     Effect::kShadingNormals,  Effect::kRoulette};
+constexpr EffectSet kFolded{
+    Effect::kPointLights,     Effect::kSpotLights,  Effect::kDirectionalLights,
+    Effect::kEmitterSampling, Effect::kBackground,  Effect::kEnvironment,
+    Effect::kFresnel,         Effect::kShadingNormals, Effect::kRoulette};
 
 PathSettings folded(PathSettings s, const Emitters& emitters) {
   const EffectSet simulated = s.simulated;
   s.emitter_sampling = s.emitter_sampling && emitters.has_triangles() &&
+                       simulated.contains(Effect::kAreaEmitters) &&
                        simulated.contains(Effect::kEmitterSampling);
   s.bsdf.light.roulette = s.bsdf.light.roulette && simulated.contains(Effect::kRoulette);
   if (!simulated.contains(Effect::kFresnel)) s.bsdf.light.fresnel = FresnelFormula::kNone;
@@ -31,14 +36,22 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
               .tree = scene.tree,
               .emitters = scene.emitters,
               .point_lights = scene.emitters.point_lights(),
+              .spot_lights = scene.emitters.spot_lights(),
+              .directional_lights = scene.emitters.directional_lights(),
               .background = s.background,
+              .environment = scene.emitters.environment(),
               .normals = simulated.contains(Effect::kShadingNormals),
               .settings = folded(settings, scene.emitters)};
   if (!simulated.contains(Effect::kPointLights)) t.point_lights = {};
+  if (!simulated.contains(Effect::kSpotLights)) t.spot_lights = {};
+  if (!simulated.contains(Effect::kDirectionalLights)) t.directional_lights = {};
   if (!simulated.contains(Effect::kBackground)) t.background = Rgb(0.0F);
-  t.has_light =
-      simulated.contains_any(kSources) &&
-      (!t.point_lights.empty() || t.background != Rgb(0.0F) || scene.emitters.has_triangles());
+  if (!simulated.contains(Effect::kEnvironment)) t.environment = nullptr;
+  t.environment_sampling = t.environment != nullptr && settings.emitter_sampling &&
+                           simulated.contains(Effect::kEmitterSampling);
+  t.has_light = simulated.contains_any(kSources) &&
+                (t.has_lights_without_surface() || t.background != Rgb(0.0F) ||
+                 t.environment != nullptr || scene.emitters.has_triangles());
   return t;
 }
 

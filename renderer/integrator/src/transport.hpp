@@ -7,18 +7,27 @@
 
 namespace raykiln::render {
 
-/// Data of effects that are not simulated are not here: no point light, a black background,
-/// roulette off.
+/// Data of effects that are not simulated are not here: no point light, a black background, no
+/// environment, roulette off.
 struct Transport {
   const Scene& scene;
   const TriangleMesh& mesh;
   const KdTree& tree;
   const Emitters& emitters;
   std::span<const PointLight> point_lights;
+  std::span<const SpotLight> spot_lights;
+  std::span<const DirectionalLight> directional_lights;
   Rgb background{0.0F};
+  const EnvironmentLight* environment = nullptr;
+  bool environment_sampling = false;  ///< shadow rays are sent to it, too
   bool normals = true;    ///< shading normals are interpolated
   bool has_light = true;  ///< any at all; without, nothing is lost where a path is cut off
-  PathSettings settings;
+  PathSettings settings;  ///< emitter_sampling: of triangles
+
+  /// Lights that no ray can find: added at every hit.
+  [[nodiscard]] bool has_lights_without_surface() const {
+    return !point_lights.empty() || !spot_lights.empty() || !directional_lights.empty();
+  }
 };
 
 [[nodiscard]] Transport make_transport(const TransportScene& scene, const PathSettings& settings);
@@ -27,6 +36,8 @@ struct Transport {
 struct Switches {
   bool transmission = true;  ///< light may come from or go to the far side of a surface
   bool specular = true;      ///< Phong lobes
+  const EnvironmentLight* environment = nullptr;
+  bool environment_sampling = false;  ///< shadow rays are sent to it, too
   bool normals = true;       ///< shading normals
   bool bounces = true;       ///< paths go on after the first hit
   bool reduced = false;      ///< something that is called for is left out: asked at every vertex

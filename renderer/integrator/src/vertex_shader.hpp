@@ -7,7 +7,9 @@
 #include <type_traits>
 
 #include "leave_out.hpp"
+#include "raykiln/shading/environment_light.hpp"
 #include "raykiln/shading/matte_bsdf.hpp"
+#include "raykiln/shading/punctual_light.hpp"
 #include "raykiln/shading/surface_point.hpp"
 #include "vertex_shading.hpp"
 
@@ -57,6 +59,13 @@ inline double height_over(const TriangleMesh& mesh, std::uint32_t id, const Vec3
   return std::abs(height) <= 0x1p-50 * dot(abs(ng), abs(way)) ? 0.0 : height;
 }
 
+/// Cosine of a direction over the plane of normal `ng`; 0 when it lies in it as far as doubles can
+/// tell.
+inline double cosine_over(const Vec3d& ng, const Vec3d& direction) {
+  const double cosine = dot(ng, direction);
+  return std::abs(cosine) <= 0x1p-50 * dot(abs(ng), abs(direction)) ? 0.0 : cosine;
+}
+
 /// Density over solid angle of a density over area, seen over `distance2` under `cosine`.
 inline double solid_angle_pdf(double pdf_area, double distance2, double cosine) {
   return pdf_area * distance2 / cosine;
@@ -72,12 +81,13 @@ class VertexShader {
   VertexShader(const Transport& transport, const PathState& state, ShadingSinks& sinks)
       : scene_(transport), settings_(transport.settings), state_(state), sinks_(sinks) {}
 
-  // L_o = L_e + sum over lights of f L cos + the scattered rays. A shadow ray to an emitter stands
-  // for one more reflection, so it is sent only where such a ray may be; point lights, which no ray
-  // can find, are added at every hit.
+  // L_o = L_e + sum over lights of f L cos + the scattered rays. A shadow ray to an emitter
+  // or the environment stands for one more reflection, so it is sent only where such a ray may be;
+  // lights without a surface, which no ray can find, are added at every hit.
   void shade(const Ray& ray, const Hit& hit) {
     if (hit.id == kNoHit) {
       sinks_.results[state_.slot].emitted += state_.throughput * Rgbd(scene_.background);
+      if (scene_.environment != nullptr) add_environment(ray);
       return;
     }
     const SurfacePoint point =
@@ -89,7 +99,7 @@ class VertexShader {
     if (kSwitches.reduced && state_.bounce > 0 && leaves_out(Effect::kIndirectLight)) return;
     const bool last = !kSwitches.bounces || state_.bounce >= settings_.max_depth;
     if (last) sinks_.results[state_.slot].truncated = scene_.has_light;
-    if (last && scene_.point_lights.empty()) return;
+    if (last && !scene_.has_lights_without_surface()) return;
 
     const Vertex vertex{hit.id, material.transparent > 0.0F, point, lobes(material, point, -ray.d),
                         kSwitches.bounces && !last
@@ -98,6 +108,7 @@ class VertexShader {
     light_from_points(vertex);
     if (last) return;
     if (settings_.emitter_sampling) light_from_emitters(vertex);
+    if (scene_.environment_sampling) light_from_environment(vertex);
     scatter(vertex);
   }
 
@@ -126,35 +137,56 @@ class VertexShader {
     if (state_.bounce > 0 && settings_.emitter_sampling) {
       const Vec3d d(ray.d);
       const double distance2 = static_cast<double>(t) * static_cast<double>(t) * dot(d, d);
-      const double other = solid_angle_pdf(scene_.emitters.pdf_area(radiance), distance2,
+      const double other = solid_angle_pdf(scene_.emitters.pdf_area(point.material), distance2,
                                            std::abs(dot(point.ng, d)));
       weight = power_heuristic(state_.pdf, other);
     }
     sinks_.results[state_.slot].emitted += state_.throughput * Rgbd(radiance) * weight;
   }
 
-  /// Point lights: I cos / r^2 times f, all of them, as the seed goes through them.
-  void light_from_points(const Vertex& vertex) {
-    for (const PointLight& light : scene_.point_lights) {
-      if (sinks_.stopped) return;
-      const Vec3d way = Vec3d(light.position) - vertex.point.p;
-      const double distance2 = dot(way, way);
-      if (!(distance2 > 0.0)) {
-        ++sinks_.stats.lights_at_hits;
-        continue;
-      }
-      if (!faces(vertex, Vec3d(light.position))) continue;
-      const Vec3d wi = way / std::sqrt(distance2);
-      const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
-      const Rgbd arriving = Rgbd(light.intensity) / distance2;
-      const Rgbd found = state_.throughput * value.f_cos * arriving;
-      if (found == Rgbd(0.0)) continue;
-      if (kSwitches.reduced && leaves_out(Effect::kPointLightShadows)) {
-        sinks_.results[state_.slot].emitted += found;
-      } else {
-        queue({ray_origin(vertex.point, wi), light.position, ShadowEnd::kPointLight}, found);
-      }
+  /// Environment seen by the path itself, weighted against its being found by a shadow ray.
+  void add_environment(const Ray& ray) {
+    const EnvironmentLight::Seen seen = scene_.environment->towards(Vec3d(ray.d));
+    const bool found_twice = state_.bounce > 0 && scene_.environment_sampling;
+    const double weight = found_twice ? power_heuristic(state_.pdf, seen.pdf) : 1.0;
+    sinks_.results[state_.slot].emitted += state_.throughput * seen.radiance * weight;
+  }
+
+  /// Light at a place: I cos / r^2 times f and what range and cone leave of it.
+  template <class Light>
+  void light_from_place(const Vertex& vertex, const Light& light) {
+    if (sinks_.stopped) return;
+    const Vec3d way = Vec3d(light.position) - vertex.point.p;
+    const double distance2 = dot(way, way);
+    if (!(distance2 > 0.0)) {
+      ++sinks_.stats.lights_at_hits;
+      return;
     }
+    if (!faces(vertex, Vec3d(light.position))) return;
+    const Vec3d wi = way / std::sqrt(distance2);
+    Rgbd arriving = Rgbd(light.intensity) / distance2;
+    if (light.range < kEndlessRange) arriving *= range_share(distance2, light.range);
+    if constexpr (std::is_same_v<Light, SpotLight>) arriving *= cone_share(light, -wi);
+    if (arriving == Rgbd(0.0)) return;
+    const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
+    add_unfindable({ray_origin(vertex.point, wi), light.position, ShadowEnd::kPointLight},
+                   state_.throughput * value.f_cos * arriving);
+  }
+
+  void light_along(const Vertex& vertex, const DirectionalLight& light) {
+    if (sinks_.stopped) return;
+    const Vec3d wi = -light.direction;
+    if (!on_lit_side(vertex, cosine_over(vertex.point.ng, wi))) return;
+    const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
+    add_unfindable({ray_origin(vertex.point, wi), Vec3f(wi), ShadowEnd::kInfinity},
+                   state_.throughput * value.f_cos * Rgbd(light.irradiance));
+  }
+
+  /// Lights without a surface: all of them, as the seed goes through its point lights.
+  void light_from_points(const Vertex& vertex) {
+    for (const PointLight& light : scene_.point_lights) light_from_place(vertex, light);
+    for (const SpotLight& light : scene_.spot_lights) light_from_place(vertex, light);
+    for (const DirectionalLight& light : scene_.directional_lights) light_along(vertex, light);
   }
 
   /// One point on an emitting triangle, weighted against the path's own rays finding it.
@@ -171,6 +203,18 @@ class VertexShader {
     const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
     const Vec3f from = ray_origin(vertex.point, wi);
     queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface},
+          state_.throughput * value.f_cos * sample.radiance * weight);
+  }
+
+  /// One direction to the environment, weighted against the path's own rays finding it.
+  void light_from_environment(const Vertex& vertex) {
+    const EnvironmentSample sample = scene_.environment->sample(vertex.key);
+    const Vec3f wi(sample.wi);
+    const BsdfValue value = evaluate(vertex.bsdf, wi);
+    if (value.f_cos == Rgbd(0.0)) return;
+    const double weight =
+        power_heuristic(sample.pdf, settings_.branches * value.pdf) / sample.pdf;
+    queue({ray_origin(vertex.point, sample.wi), wi, ShadowEnd::kInfinity},
           state_.throughput * value.f_cos * sample.radiance * weight);
   }
 
@@ -209,6 +253,9 @@ class VertexShader {
   /// computed give a light within 1e-7 of the plane's direction the side of a rounding error.
   bool faces(const Vertex& vertex, const Vec3d& light) const {
     const double height = height_over(scene_.mesh, vertex.id, vertex.point.ng, light);
+    return on_lit_side(vertex, height);
+  }
+  bool on_lit_side(const Vertex& vertex, double height) const {
     if (height == 0.0) return false;
     const bool viewed_from_front = dot(Vec3d(vertex.bsdf.ng), vertex.point.ng) > 0.0;
     return vertex.transmits || (height > 0.0) == viewed_from_front;
@@ -218,6 +265,15 @@ class VertexShader {
     Vec3f from, to;
     ShadowEnd end;
   };
+  /// Light that arrives if nothing is in the way; where shadows are left out, in any case.
+  void add_unfindable(const ShadowWay& way, const Rgbd& light) {
+    if (light == Rgbd(0.0)) return;
+    if (kSwitches.reduced && leaves_out(Effect::kPointLightShadows)) {
+      sinks_.results[state_.slot].emitted += light;
+    } else {
+      queue(way, light);
+    }
+  }
   void queue(const ShadowWay& way, const Rgbd& light) {
     if (light == Rgbd(0.0)) return;
     sinks_.shadows.push(way.from, way.to, way.end, light, state_.slot);

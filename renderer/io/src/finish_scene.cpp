@@ -8,6 +8,7 @@
 
 #include "material_mapping.hpp"
 #include "raykiln/scene/camera.hpp"
+#include "raykiln/scene/environment_map.hpp"
 #include "recentre.hpp"
 #include "zero_area.hpp"
 
@@ -19,6 +20,7 @@ constexpr float kDefaultBackground = 0.3F;
 /// W m^-2 that the default lamp sends to the middle of the scene: white reflects about radiance 1.
 constexpr double kDefaultLampIrradiance = 3.0;
 constexpr double kDefaultFovRad = 0.7;
+constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 class Finisher {
  public:
@@ -200,16 +202,43 @@ class Finisher {
 
   bool finish_lights() {
     for (DraftLight& light : draft_.lights) {
-      const Rgb intensity(light.intensity);
-      if (intensity == Rgb(0.0F)) {
-        diagnostics_.warn(ImportWarningCode::kZeroLight, "point lights without power are dropped");
+      if (Rgb(light.power) == Rgb(0.0F)) {
+        diagnostics_.warn(ImportWarningCode::kZeroLight, "lights without power are dropped");
+        continue;
+      }
+      if (light.kind == LightKind::kDirectional) {
+        scene_.directional_lights.push_back({.name = std::move(light.name),
+                                             .direction = normalize(light.direction),
+                                             .irradiance = Rgb(light.power)});
         continue;
       }
       const Vec3d p = light.position * draft_.metres_per_unit - scene_.origin;
       if (!in_range(p)) return out_of_range("light " + in_quotes(light.name));
-      scene_.point_lights.push_back({std::move(light.name), Vec3f(p), intensity});
+      add_light_at(Vec3f(p), std::move(light));
     }
     return true;
+  }
+
+  void add_light_at(const Vec3f& position, DraftLight&& light) {
+    const double range = light.range * draft_.metres_per_unit;
+    const float shorter = range < kLargestFloat ? static_cast<float>(range) : kEndlessRange;
+    if (light.kind == LightKind::kPoint) {
+      scene_.point_lights.push_back({.name = std::move(light.name),
+                                     .position = position,
+                                     .intensity = Rgb(light.power),
+                                     .range = shorter});
+      return;
+    }
+    const auto one_minus_cos = [](double angle) {
+      return 2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle);
+    };
+    scene_.spot_lights.push_back({.name = std::move(light.name),
+                                  .position = position,
+                                  .intensity = Rgb(light.power),
+                                  .range = shorter,
+                                  .axis = normalize(light.direction),
+                                  .inner_one_minus_cos = one_minus_cos(light.inner_rad),
+                                  .outer_one_minus_cos = one_minus_cos(light.outer_rad)});
   }
 
   bool finish_cameras() {
@@ -240,9 +269,11 @@ class Finisher {
 
   bool finish_background() {
     if (draft_.background) scene_.background = Rgb(*draft_.background);
-    const bool lit = !scene_.point_lights.empty() || any_emission();
+    scene_.environment = std::move(draft_.environment);
+    const bool lit = !scene_.point_lights.empty() || !scene_.spot_lights.empty() ||
+                     !scene_.directional_lights.empty() || any_emission() || bright_environment();
     if (lit || scene_.background != Rgb(0.0F)) return true;
-    if (draft_.background) {
+    if (draft_.background || scene_.environment != nullptr) {
       diagnostics_.warn(ImportWarningCode::kNoLight,
                         "nothing in the scene gives light: the picture will be black");
       return true;
@@ -264,7 +295,15 @@ class Finisher {
     const Vec3d way = 1.5 * length(hi - lo) * normalize(Vec3d(-0.6, 1.0, 0.7));
     const auto intensity = static_cast<float>(kDefaultLampIrradiance * dot(way, way));
     if (!(intensity > 0.0F)) return;
-    scene_.point_lights.push_back({"default", Vec3f(0.5 * (lo + hi) + way), Rgb(intensity)});
+    scene_.point_lights.push_back({.name = "default",
+                                   .position = Vec3f(0.5 * (lo + hi) + way),
+                                   .intensity = Rgb(intensity)});
+  }
+
+  [[nodiscard]] bool bright_environment() const {
+    if (scene_.environment == nullptr) return false;
+    const std::vector<float>& values = scene_.environment->rgb;
+    return std::any_of(values.begin(), values.end(), [](float value) { return value > 0.0F; });
   }
 
   [[nodiscard]] bool any_emission() const {

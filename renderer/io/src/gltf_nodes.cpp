@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "gltf_lights.hpp"
 #include "raykiln/scene/camera.hpp"
 
 namespace raykiln::render::io {
@@ -187,7 +188,6 @@ bool GltfNodes::camera(const JsonAt& node, std::uint64_t index, const Mat4d& to_
   return true;
 }
 
-// Candela are taken as W/sr one to one, as emissive radiance is: the file's proportions stay.
 bool GltfNodes::light(const JsonAt& node, std::uint64_t index, const Mat4d& to_world) {
   const auto extensions = root_.object("extensions");
   const auto holder = extensions ? extensions->object("KHR_lights_punctual") : std::nullopt;
@@ -201,23 +201,9 @@ bool GltfNodes::light(const JsonAt& node, std::uint64_t index, const Mat4d& to_w
   if (draft_->lights.size() >= limits.max_point_lights) {
     return at.fail(ImportErrorCode::kLimitExceeded, "too many lights");
   }
-  const std::string type = at.text_or("type", "");
-  if (type != "point") {
-    at.warn(ImportWarningCode::kUnsupportedLight,
-            "only point lights are supported, this one is " + in_quotes(type));
-    return !at.diagnostics().failed();
-  }
-  if (at.has("range")) {
-    at.warn(ImportWarningCode::kIgnoredFeature, "the range of a light is ignored");
-  }
-  DraftLight made;
-  made.name = clean_text(at.text_or("name", node.text_or("name", "light")));
-  made.intensity = at.vec3_in("color", Vec3d(1.0), 0.0, 1.0) *
-                   at.number_in("intensity", 1.0, 0.0, limits.max_radiance);
-  made.position = Vec3d(to_world[3]);
-  if (at.diagnostics().failed()) return false;
-  draft_->lights.push_back(std::move(made));
-  return true;
+  const auto made = read_gltf_light(at, node, to_world);
+  if (made) draft_->lights.push_back(*made);
+  return !at.diagnostics().failed();
 }
 
 }  // namespace raykiln::render::io

@@ -81,7 +81,7 @@ bool import_into(const SceneFiles& files, const ImportOptions& options, Diagnost
   result.report.root_file = io::clean_text(*root);
   io::SceneDraft draft;
   if (!read_format(*format, files, *root, diagnostics, draft)) return false;
-  if (sidecar && !io::apply_sidecar(sidecar->root(), draft)) return false;
+  if (sidecar && !io::apply_sidecar(files, sidecar->root(), draft)) return false;
   return io::finish_scene(std::move(draft), diagnostics, result.scene, result.report);
 }
 

@@ -25,6 +25,7 @@ std::string_view name(ImportErrorCode code) {
     case ImportErrorCode::kInvalidValue: return "invalid_value";
     case ImportErrorCode::kInvalidGlb: return "invalid_glb";
     case ImportErrorCode::kBufferOutOfRange: return "buffer_out_of_range";
+    case ImportErrorCode::kInvalidPicture: return "invalid_picture";
     case ImportErrorCode::kNodeCycle: return "node_cycle";
     case ImportErrorCode::kUnsupportedVersion: return "unsupported_version";
     case ImportErrorCode::kUnsupportedExtension: return "unsupported_extension";

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,10 +18,19 @@ namespace raykiln::render::io {
 inline constexpr std::size_t kMaxNameBytes = 1024;  ///< of a material's name; the rest is cut
 inline constexpr std::string_view kDefaultMaterialName = "default";
 
+enum class LightKind { kPoint, kSpot, kDirectional };
+
+/// A light without a surface, of any kind.
 struct DraftLight {
   std::string name;
+  LightKind kind = LightKind::kPoint;
   Vec3d position{0.0};
-  Rgbd intensity{0.0};  ///< W sr^-1
+  Rgbd power{0.0};  ///< intensity, W sr^-1; of a directional light irradiance, W m^-2
+  double range = kNoRange;  ///< in the units of positions
+  Vec3d direction{0.0, 0.0, -1.0};  ///< in which it shines, any length > 0
+  double inner_rad = 0.0, outer_rad = 0.0;  ///< of a spot: 0 <= inner <= outer <= pi, from the axis
+
+  static constexpr double kNoRange = std::numeric_limits<double>::infinity();
 };
 
 struct DraftCamera {
@@ -58,6 +69,7 @@ struct SceneDraft {
   std::vector<DraftLight> lights;
   std::vector<DraftCamera> cameras;
   std::optional<Rgbd> background;  ///< set by a sidecar only
+  std::shared_ptr<const EnvironmentMap> environment;  ///< likewise
   double metres_per_unit = 1.0;
   bool single_precision = false;  ///< the file format stores positions as float
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "environment.hpp"
 #include "material_mapping.hpp"
 #include "raykiln/scene/camera.hpp"
 #include "scene_file_names.hpp"
+#include "sidecar_lights.hpp"
 
 namespace raykiln::render::io {
 namespace {
@@ -14,15 +16,6 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kLargestWeight = 1e6;
 constexpr double kSmallestAngleDeg = 1e-4;
 constexpr double kLargestAngleDeg = 179.9;
-
-Vec3d required_point(const JsonAt& at, const char* key) {
-  if (!at.has(key)) {
-    at.fail(ImportErrorCode::kMissingField, "the field " + in_quotes(key) + " is missing");
-    return Vec3d(0.0);
-  }
-  const double limit = at.diagnostics().limits().max_coordinate;
-  return at.vec3_in(key, Vec3d(0.0), -limit, limit);
-}
 
 bool read_camera(const JsonAt& at, std::vector<DraftCamera>& cameras) {
   if (!at.expect_object() || !at.only({"name", "eye", "look_at", "up", "fov_deg"})) return false;
@@ -55,29 +48,6 @@ bool read_cameras(const JsonAt& root, SceneDraft& draft) {
   }
   draft.cameras.insert(draft.cameras.begin(), cameras.begin(), cameras.end());
   return !root.diagnostics().failed();
-}
-
-bool read_lights(const JsonAt& root, SceneDraft& draft) {
-  const auto lights = root.array("point_lights");
-  if (!lights) return !root.diagnostics().failed();
-  const ImportLimits& limits = root.diagnostics().limits();
-  if (lights->size() > limits.max_point_lights) {
-    return lights->fail(ImportErrorCode::kLimitExceeded, "too many point lights");
-  }
-  for (std::size_t i = 0; i < lights->size(); ++i) {
-    const JsonAt at = lights->element(i);
-    if (!at.expect_object() || !at.only({"name", "position", "intensity"})) return false;
-    DraftLight light;
-    light.name = clean_text(at.text_or("name", "light " + std::to_string(i + 1)));
-    light.position = required_point(at, "position");
-    if (!at.has("intensity")) {
-      return at.fail(ImportErrorCode::kMissingField, "the field 'intensity' is missing");
-    }
-    light.intensity = at.vec3_in("intensity", Vec3d(0.0), 0.0, limits.max_radiance);
-    if (root.diagnostics().failed()) return false;
-    draft.lights.push_back(std::move(light));
-  }
-  return true;
 }
 
 bool override_material(const JsonAt& at, Material& material) {
@@ -131,19 +101,21 @@ std::optional<JsonDocument> read_sidecar(const SceneFiles& files, const std::str
   auto document = JsonDocument::parse(*text, name, diagnostics);
   if (!document || !document->root().expect_object()) return std::nullopt;
   if (!document->root().only({"$schema", "scene", "scale", "camera", "cameras", "point_lights",
-                              "background", "materials"})) {
+                              "spot_lights", "directional_lights", "background", "environment",
+                              "materials"})) {
     return std::nullopt;
   }
   return document;
 }
 
-bool apply_sidecar(const JsonAt& root, SceneDraft& draft) {
+bool apply_sidecar(const SceneFiles& files, const JsonAt& root, SceneDraft& draft) {
   draft.metres_per_unit = root.number_in("scale", 1.0, 1e-12, 1e12);
   if (root.has("background")) {
     draft.background = root.vec3_in("background", Vec3d(0.0), 0.0,
                                     root.diagnostics().limits().max_radiance);
   }
-  return !root.diagnostics().failed() && read_cameras(root, draft) && read_lights(root, draft) &&
+  return !root.diagnostics().failed() && read_cameras(root, draft) &&
+         read_sidecar_lights(root, draft) && read_environment(files, root, draft) &&
          read_materials(root, draft);
 }
 

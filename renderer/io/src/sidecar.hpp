@@ -13,7 +13,8 @@ namespace raykiln::render::io {
 std::optional<JsonDocument> read_sidecar(const SceneFiles& files, const std::string& name,
                                          Diagnostics& diagnostics);
 
-/// Adds its cameras (before those of the file), lights and background, and overrides materials.
-bool apply_sidecar(const JsonAt& root, SceneDraft& draft);
+/// Adds its cameras (before those of the file), lights, background or environment, and overrides
+/// materials.
+bool apply_sidecar(const SceneFiles& files, const JsonAt& root, SceneDraft& draft);
 
 }  // namespace raykiln::render::io

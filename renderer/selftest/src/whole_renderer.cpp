@@ -16,7 +16,7 @@ class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : seed_(seed) {}
   double next() {
-    return uniform(vertex_key(path_key(seed_, 0, count_++), 0, 0), Dimension::kSpare0);
+    return uniform(vertex_key(path_key(seed_, 0, count_++), 0, 0), Dimension::kEnvironmentU);
   }
   float between(double low, double high) { return static_cast<float>(low + (high - low) * next()); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "raykiln/sampling/warp.hpp"
+#include "raykiln/shading/environment_light.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -18,8 +19,24 @@ double triangle_area(const TriangleMesh& mesh, std::uint32_t id) {
                             Vec3d(mesh.positions[corner[2]]) - p0));
 }
 
+/// Those with power above 0.
+template <class Light>
+std::vector<Light> shining(const std::vector<Light>& lights, Rgb Light::*power) {
+  std::vector<Light> kept;
+  std::copy_if(lights.begin(), lights.end(), std::back_inserter(kept),
+               [power](const Light& light) { return largest_channel(light.*power) > 0.0; });
+  return kept;
+}
+
+std::shared_ptr<const EnvironmentLight> environment_of(const Scene& scene) {
+  if (scene.environment == nullptr) return nullptr;
+  auto light = std::make_shared<const EnvironmentLight>(scene.environment);
+  return light->shines() ? light : nullptr;
+}
+
 }  // namespace
 
+// The density of a point: (L_max A / total) (1 / A), the area cancels.
 Emitters::Emitters(const Scene& scene) {
   std::vector<double> power;
   for (std::uint32_t id = 0; id < scene.mesh.triangles.size(); ++id) {
@@ -32,9 +49,15 @@ Emitters::Emitters(const Scene& scene) {
     power.push_back(weight);
   }
   distribution_ = DiscreteDistribution(power);
-  std::copy_if(scene.point_lights.begin(), scene.point_lights.end(),
-               std::back_inserter(point_lights_),
-               [](const PointLight& light) { return largest_channel(light.intensity) > 0.0; });
+  pdf_area_.reserve(scene.materials.size());
+  for (const Material& material : scene.materials) {
+    pdf_area_.push_back(has_triangles() ? largest_channel(material.emission) / distribution_.total()
+                                        : 0.0);
+  }
+  point_lights_ = shining(scene.point_lights, &PointLight::intensity);
+  spot_lights_ = shining(scene.spot_lights, &SpotLight::intensity);
+  directional_lights_ = shining(scene.directional_lights, &DirectionalLight::irradiance);
+  environment_ = environment_of(scene);
 }
 
 EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex) const {
@@ -43,15 +66,9 @@ EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex) cons
                                                   uniform(vertex, Dimension::kLightV));
   EmitterSample sample;
   sample.point = surface_point(scene.mesh, triangles_[drawn], b.b1, b.b2);
-  const Rgb& radiance = scene.materials[sample.point.material].emission;
-  sample.radiance = Rgbd(radiance);
-  sample.pdf_area = pdf_area(radiance);
+  sample.radiance = Rgbd(scene.materials[sample.point.material].emission);
+  sample.pdf_area = pdf_area(sample.point.material);
   return sample;
-}
-
-// (L_max A / total) (1 / A): the area cancels.
-double Emitters::pdf_area(const Rgb& radiance) const {
-  return largest_channel(radiance) / distribution_.total();
 }
 
 }  // namespace raykiln::render

@@ -5,10 +5,19 @@
 #include <exception>
 #include <new>
 
+#include "raykiln/scene/environment_map.hpp"
+
 namespace raykiln::server {
 namespace {
 
 using render::BuildParams;
+
+/// The map and the table that is made of it for sampling.
+std::uint64_t environment_bytes(const render::Scene& scene) {
+  if (scene.environment == nullptr) return 0;
+  const std::uint64_t values = scene.environment->rgb.size();
+  return values * sizeof(float) + values / 3 * sizeof(double);
+}
 
 std::uint64_t bytes_of(const render::Scene& scene) {
   const auto& mesh = scene.mesh;
@@ -18,7 +27,9 @@ std::uint64_t bytes_of(const render::Scene& scene) {
          mesh.normals.size() * sizeof(render::Vec3f) +
          mesh.corner_normals.size() * sizeof(mesh.corner_normals[0]) +
          scene.materials.size() * sizeof(render::Material) +
-         scene.point_lights.size() * sizeof(render::PointLight);
+         scene.point_lights.size() * sizeof(render::PointLight) +
+         scene.spot_lights.size() * sizeof(render::SpotLight) +
+         scene.directional_lights.size() * sizeof(render::DirectionalLight) + environment_bytes(scene);
 }
 
 std::string tree_key(const render::Scene& scene, const BuildParams& p) {

@@ -81,6 +81,9 @@ SceneReport to_report(const render::Scene& scene, const render::ImportReport& im
     if (report.materials.size() < kMaxNames) report.materials.push_back(material.name);
   }
   report.point_lights = scene.point_lights.size();
+  report.spot_lights = scene.spot_lights.size();
+  report.directional_lights = scene.directional_lights.size();
+  report.environment = scene.environment != nullptr;
   report.emissive_triangles = emissive_triangles(scene);
   for (const auto& camera : scene.cameras) report.cameras.push_back(camera.name);
   report.bounds_min = world(scene.origin, scene.bounds.lo);

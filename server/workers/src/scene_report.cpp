@@ -43,6 +43,9 @@ std::string encode_report(const SceneReport& report) {
   r.natural("material_count", report.material_count);
   for (const auto& material : report.materials) r.text("material", material);
   r.natural("point_lights", report.point_lights);
+  r.natural("spot_lights", report.spot_lights);
+  r.natural("directional_lights", report.directional_lights);
+  r.natural("environment", report.environment ? 1U : 0U);
   r.natural("emissive_triangles", report.emissive_triangles);
   for (const auto& camera : report.cameras) r.text("camera", camera);
   for (const double c : report.bounds_min) r.real("bounds_min", c);
@@ -70,6 +73,9 @@ std::optional<SceneReport> decode_report(std::string_view text) {
   report.material_count = r.natural("material_count");
   report.materials = r.list("material");
   report.point_lights = r.natural("point_lights");
+  report.spot_lights = r.natural("spot_lights");
+  report.directional_lights = r.natural("directional_lights");
+  report.environment = r.natural("environment") != 0;
   report.emissive_triangles = r.natural("emissive_triangles");
   report.cameras = r.list("camera");
   report.bounds_min = read_point(r, "bounds_min");

@@ -18,7 +18,7 @@ TEST(EffectPlan, AutoSimulatesWhatIsCalledFor) {
                                              Effect::kDiffuseReflection}));
   EXPECT_TRUE(matte.simulated == matte.called_for);
   EXPECT_TRUE(matte.approximated().empty());
-  EXPECT_TRUE(plan(support::everything(), "auto").simulated == EffectSet::everything());
+  EXPECT_TRUE(plan(support::complete(), "auto").simulated == EffectSet::everything());
 }
 
 TEST(EffectPlan, AllSimulatesEverything) {

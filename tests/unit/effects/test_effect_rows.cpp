@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "raykiln/effects/effect_plan.hpp"
+#include "raykiln/scene/environment_map.hpp"
 #include "support/scene_pieces.hpp"
 
 namespace raykiln::render {
@@ -32,6 +33,13 @@ struct Case {
   bool calls_for(Effect effect) { return plan().called_for.contains(effect); }
 };
 
+void put_out_lights(Scene& scene) {
+  scene.point_lights.clear();
+  scene.spot_lights.clear();
+  scene.directional_lights.clear();
+  scene.environment = nullptr;
+}
+
 TEST(EffectRows, EveryExampleCallsForItsEffect) {
   for (const EffectRow* row : effect_table()) {
     Case c;
@@ -47,7 +55,7 @@ TEST(EffectRows, AMaterialThatNoTriangleHasCallsForNothing) {
     const EffectJob job = c.job;
     row->provoke({c.scene(), c.job, c.spare});
     c.job = job;
-    c.scene().point_lights.clear();
+    put_out_lights(c.scene());
     c.scene().mesh.corner_normals.clear();
     for (std::uint32_t& id : c.scene().mesh.material_ids) id = 0;
     EXPECT_TRUE(c.plan().called_for == before) << row->name;
@@ -59,7 +67,7 @@ TEST(EffectRows, WithoutLightNothingIsCalledFor) {
     Case c;
     row->provoke({c.scene(), c.job, c.spare});
     c.scene().background = Rgb(0.0F);
-    c.scene().point_lights.clear();
+    put_out_lights(c.scene());
     for (Material& m : c.scene().materials) m.emission = Rgb(0.0F);
     EXPECT_TRUE(c.plan().called_for.empty()) << row->name;
   }
@@ -88,6 +96,28 @@ TEST(EffectRows, Conditions) {
        [](Case& c) {
          c.builder.point_light({0, 3, 0}, Rgb(1.0F));
          c.scene().materials[0] = {};
+       }},
+      {"a spot of power 0", Effect::kSpotLights, false,
+       [](Case& c) { c.scene().spot_lights.push_back({}); }},
+      {"a sun of power 0", Effect::kDirectionalLights, false,
+       [](Case& c) { c.scene().directional_lights.push_back({}); }},
+      {"a sun", Effect::kPointLightShadows, true,
+       [](Case& c) {
+         row_of(Effect::kDirectionalLights).provoke({c.scene(), c.job, c.spare});
+       }},
+      {"a sun, no point light", Effect::kPointLights, false,
+       [](Case& c) {
+         row_of(Effect::kDirectionalLights).provoke({c.scene(), c.job, c.spare});
+       }},
+      {"a black environment map", Effect::kEnvironment, false,
+       [](Case& c) {
+         EnvironmentMap map{.name = "", .width = 2, .height = 1, .rgb = std::vector<float>(6)};
+         c.scene().environment = std::make_shared<const EnvironmentMap>(map);
+       }},
+      {"an environment at max_depth 1", Effect::kEmitterSampling, true,
+       [](Case& c) {
+         row_of(Effect::kEnvironment).provoke({c.scene(), c.job, c.spare});
+         c.job.max_depth = 1;
        }},
       {"emission 0", Effect::kAreaEmitters, false,
        [](Case& c) { c.material().emission = Rgb(0.0F); }},

@@ -187,12 +187,79 @@ TEST(Gltf, CamerasLookAlongMinusZ) {
   EXPECT_EQ(count_of(imported, Warn::kUnsupportedCamera), 1U);
 }
 
-TEST(Gltf, PointLightsAreReadOthersListed) {
+/// A scene with these lights, one a node; every node is at (0, 3, 0), turned so that -z is down and
+/// scaled by 2.
+ImportedScene lights_scene(const Json& lights) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  builder.root["extensions"]["KHR_lights_punctual"]["lights"] = lights;
+  const double h = std::sqrt(0.5);
+  for (std::size_t light = 0; light < lights.size(); ++light) {
+    builder.root["nodes"].push_back(
+        {{"translation", {0, 3, 0}}, {"rotation", {-h, 0, 0, h}}, {"scale", {2, 2, 2}}});
+    builder.root["nodes"].back()["extensions"]["KHR_lights_punctual"]["light"] = light;
+    builder.root["scenes"][0]["nodes"].push_back(builder.root["nodes"].size() - 1);
+  }
+  return scene_of(builder);
+}
+
+TEST(GltfLights, SpotsSunsAndRanges) {
+  const auto imported = lights_scene(
+      {{{"type", "spot"}, {"intensity", 5}, {"range", 7},
+        {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
+       {{"type", "spot"}},
+       {{"type", "directional"}, {"intensity", 3}, {"color", {1, 0.5, 0}}},
+       {{"type", "point"}, {"range", 4}}});
+  const Scene& scene = imported.scene;
+  ASSERT_EQ(scene.spot_lights.size(), 2U);
+  EXPECT_EQ(scene.spot_lights[0].position, Vec3f(0, 3, 0));
+  EXPECT_EQ(scene.spot_lights[0].intensity, Rgb(5.0F));
+  EXPECT_EQ(scene.spot_lights[0].range, 7.0F);  // not scaled by the node
+  EXPECT_NEAR(length(scene.spot_lights[0].axis - Vec3d(0, -1, 0)), 0.0, 1e-15);
+  EXPECT_NEAR(scene.spot_lights[0].inner_one_minus_cos, 1.0 - std::cos(0.25), 1e-15);
+  EXPECT_NEAR(scene.spot_lights[0].outer_one_minus_cos, 1.0 - std::cos(0.5), 1e-15);
+  EXPECT_EQ(scene.spot_lights[1].range, kEndlessRange);
+  EXPECT_EQ(scene.spot_lights[1].inner_one_minus_cos, 0.0);
+  EXPECT_NEAR(scene.spot_lights[1].outer_one_minus_cos, 1.0 - std::sqrt(0.5), 1e-15);
+  ASSERT_EQ(scene.directional_lights.size(), 1U);
+  EXPECT_EQ(scene.directional_lights[0].irradiance, Rgb(3.0F, 1.5F, 0.0F));
+  EXPECT_NEAR(length(scene.directional_lights[0].direction - Vec3d(0, -1, 0)), 0.0, 1e-15);
+  ASSERT_EQ(scene.point_lights.size(), 1U);
+  EXPECT_EQ(scene.point_lights[0].range, 4.0F);
+  EXPECT_EQ(scene.background, Rgb(0.0F));
+}
+
+TEST(GltfLights, WhatIsWrongIsRefusedWithItsPlace) {
+  const auto error_of = [](const Json& light) {
+    GltfBuilder builder;
+    builder.triangle();
+    builder.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    builder.root["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({light});
+    builder.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    const auto result = import_scene(MemoryFiles({{"a.gltf", builder.gltf()}}));
+    const auto* error = std::get_if<ImportError>(&result);
+    return error == nullptr ? std::string("accepted")
+                            : std::string(name(error->code)) + ' ' + error->where;
+  };
+  const std::string at = "/extensions/KHR_lights_punctual/lights/0";
+  EXPECT_EQ(error_of({{"type", "spot"},
+                      {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}),
+            "invalid_value " + at + "/spot");
+  EXPECT_EQ(error_of({{"type", "spot"}, {"spot", {{"outerConeAngle", 1.6}}}}),
+            "invalid_value " + at + "/spot/outerConeAngle");
+  EXPECT_EQ(error_of({{"type", "point"}, {"range", 0}}), "invalid_value " + at + "/range");
+  EXPECT_EQ(error_of({{"type", "directional"}, {"intensity", -1}}),
+            "invalid_value " + at + "/intensity");
+  EXPECT_EQ(error_of({{"type", "spot"}, {"spot", 3}}), "wrong_type " + at + "/spot");
+}
+
+TEST(Gltf, PointLightsAreReadUnknownKindsListed) {
   GltfBuilder builder;
   builder.triangle();
   builder.root["extensionsUsed"] = {"KHR_lights_punctual"};
   builder.root["extensions"]["KHR_lights_punctual"]["lights"] = {
-      {{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 8}}, {{"type", "spot"}}};
+      {{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 8}}, {{"type", "torch"}}};
   for (const int light : {0, 1}) {
     builder.root["nodes"].push_back({{"translation", {0, 3, 0}}});
     builder.root["nodes"].back()["extensions"]["KHR_lights_punctual"]["light"] = light;
@@ -272,17 +339,17 @@ TEST(Gltf, WhatIsNotShownIsListed) {
   GltfBuilder builder;
   builder.triangle();
   builder.root["animations"] = Json::array();
-  builder.root["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_texture_transform"};
-  builder.root["extensionsRequired"] = {"KHR_texture_transform"};
-  builder.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
-                                {"emissiveFactor", {1, 1, 1}},
-                                {"emissiveTexture", {{"index", 0}}}}};
+  builder.root["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_texture_basisu"};
+  builder.root["extensionsRequired"] = {"KHR_texture_basisu"};
+  builder.root["materials"] = Json::array();
+  builder.root["materials"].push_back(
+      {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}},
+       {"normalTexture", {{"index", 0}}}});
   builder.root["meshes"][0]["primitives"][0]["targets"] = Json::array();
   const auto imported = scene_of(builder);
   EXPECT_EQ(count_of(imported, Warn::kIgnoredExtension), 2U);
   EXPECT_EQ(count_of(imported, Warn::kIgnoredFeature), 2U);
   EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 2U);
-  EXPECT_EQ(imported.scene.materials[0].emission, Rgb(0.0F));
 }
 
 TEST(Gltf, FarAwaySinglePrecisionIsListed) {

@@ -66,7 +66,7 @@ TEST(Mtl, TheFirstDefinitionStays) {
 
 TEST(Mtl, TexturesAreListed) {
   const auto imported = expect_scene(
-      {{"a.obj", kObj}, {"m.mtl", "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd x.png\nmap_Kd y.png\n"}});
+      {{"a.obj", kObj}, {"m.mtl", "newmtl a\nKd 0.5 0.5 0.5\nmap_Ks x.png\nbump y.png\n"}});
   EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 2U);
 }
 

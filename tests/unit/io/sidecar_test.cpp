@@ -64,6 +64,31 @@ TEST(Sidecar, ScaleAppliesToEveryPosition) {
   EXPECT_EQ(imported.scene.point_lights[0].position, Vec3f(1, 0, 0));
 }
 
+TEST(Sidecar, SpotsAndSuns) {
+  const auto imported = expect_scene({{"a.obj", kObj}, {"raykiln.json", R"({"scale": 0.5,
+      "point_lights": [{"position": [0, 0, 0], "intensity": [1, 1, 1], "range": 8}],
+      "spot_lights": [{"position": [2, 0, 0], "direction": [0, -3, 0], "intensity": [1, 2, 3],
+                       "inner_deg": 10, "outer_deg": 20, "range": 6}],
+      "directional_lights": [{"direction": [0, 0, -2], "irradiance": [4, 5, 6]}]})"}});
+  const Scene& scene = imported.scene;
+  ASSERT_EQ(scene.point_lights.size(), 1U);
+  EXPECT_EQ(scene.point_lights[0].range, 4.0F);
+  ASSERT_EQ(scene.spot_lights.size(), 1U);
+  const SpotLight& spot = scene.spot_lights[0];
+  EXPECT_EQ(spot.position, Vec3f(1, 0, 0));
+  EXPECT_EQ(spot.axis, Vec3d(0, -1, 0));
+  EXPECT_EQ(spot.intensity, Rgb(1, 2, 3));
+  EXPECT_EQ(spot.range, 3.0F);
+  const double degree = std::numbers::pi / 180.0;
+  EXPECT_NEAR(spot.inner_one_minus_cos, 1.0 - std::cos(10.0 * degree), 1e-15);
+  EXPECT_NEAR(spot.outer_one_minus_cos, 1.0 - std::cos(20.0 * degree), 1e-15);
+  ASSERT_EQ(scene.directional_lights.size(), 1U);
+  EXPECT_EQ(scene.directional_lights[0].direction, Vec3d(0, 0, -1));
+  EXPECT_EQ(scene.directional_lights[0].irradiance, Rgb(4, 5, 6));
+  EXPECT_EQ(scene.background, Rgb(0.0F));
+  EXPECT_EQ(count_of(imported, Warn::kDefaultBackground), 0U);
+}
+
 TEST(Sidecar, UnknownMaterialNamesAreListed) {
   const auto imported =
       expect_scene({{"a.obj", kObj}, {"raykiln.json", R"({"materials": {"x": {}}})"}});

@@ -94,7 +94,7 @@ TEST(BsdfSides, OddShadingNormalsStayHarmless) {
     const VertexKey key = numbered(i);
     const Vec3f ns = sample_uniform_sphere(uniform(key, Dimension::kLensX), uniform(key, Dimension::kLensY));
     const Vec3f wo = sample_uniform_sphere(uniform(key, Dimension::kLightU), uniform(key, Dimension::kLightV));
-    const Vec3f wi = sample_uniform_sphere(uniform(key, Dimension::kSpare0), uniform(key, Dimension::kSpare1));
+    const Vec3f wi = sample_uniform_sphere(uniform(key, Dimension::kEnvironmentU), uniform(key, Dimension::kEnvironmentV));
     const Bsdf bsdf = make_bsdf(opaque, kUp, ns, wo, {});
     EXPECT_GT(bsdf.cos_o, 0.0);
     const BsdfValue value = evaluate(bsdf, wi);

@@ -43,7 +43,7 @@ TEST(SurfacePoint, InterpolatesNormalsWhereAllCornersHaveOne) {
 TriangleMesh random_triangle(std::uint64_t i) {
   std::uint64_t count = 0;
   const auto number = [&] {
-    return uniform(vertex_key(path_key(5, i, count++), 0, 0), Dimension::kSpare0);
+    return uniform(vertex_key(path_key(5, i, count++), 0, 0), Dimension::kEnvironmentU);
   };
   const auto coordinate = [&] {
     const double size = std::pow(10.0, 16.0 * number() - 8.0);

@@ -156,9 +156,12 @@ export function report(scene: Scene): [string, string][] {
 }
 
 function lights(scene: Scene): string {
-  const { point, emitting_triangles: emitting } = scene.lights;
+  const { point, spot = 0, directional = 0, environment, emitting_triangles: emitting } = scene.lights;
   const parts: string[] = [];
   if (point > 0) parts.push(`${count(point)} point`);
+  if (spot > 0) parts.push(`${count(spot)} spot`);
+  if (directional > 0) parts.push(`${count(directional)} directional`);
+  if (environment) parts.push("environment map");
   if (emitting > 0) parts.push(`${count(emitting)} emitting ${emitting === 1 ? "triangle" : "triangles"}`);
   return parts.join(", ") || "none: only the background shines";
 }

@@ -6,10 +6,13 @@
 // One a line and nothing between: CMakeLists.txt reads it too.
 #define RAYKILN_EFFECTS(ROW)                     \
   ROW(PointLights, point_lights)                 \
+  ROW(SpotLights, spot_lights)                   \
+  ROW(DirectionalLights, directional_lights)     \
   ROW(PointLightShadows, point_light_shadows)    \
   ROW(AreaEmitters, area_emitters)               \
   ROW(EmitterSampling, emitter_sampling)         \
   ROW(Background, background)                    \
+  ROW(Environment, environment)                  \
   ROW(DiffuseReflection, diffuse_reflection)     \
   ROW(DiffuseTransmission, diffuse_transmission) \
   ROW(GlossyLobes, glossy_lobes)                 \

@@ -1,4 +1,4 @@
-// Which parts of a scene can matter: found by one walk over its triangles and point lights.
+// Which parts of a scene can matter: found by one walk over its triangles and lights.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,20 @@ namespace raykiln::render {
 
 struct SceneUse {
   std::vector<std::uint32_t> materials;  ///< ids that a triangle has, ascending
-  std::uint64_t shining_point_lights = 0;  ///< those with power above 0
+  /// Those with power above 0.
+  std::uint64_t shining_point_lights = 0, shining_spot_lights = 0, shining_directional_lights = 0;
+  bool environment_shines = false;  ///< there is a map, and some texel is not black
   /// First triangle that reflects and whose normal, interpolated, may differ from that of its
   /// plane.
   std::optional<std::uint32_t> smooth_triangle{};
+
+  /// Lights that no ray can find.
+  [[nodiscard]] std::uint64_t lights_without_surface() const {
+    return shining_point_lights + shining_spot_lights + shining_directional_lights;
+  }
 };
 
-/// O(triangles + materials + point lights). Once a scene: a plan is made for every tile.
+/// O(triangles + materials + lights + texels of the environment). Once a scene: a plan is made for every tile.
 [[nodiscard]] SceneUse use_of(const Scene& scene);
 
 /// Frees what no job can make use of: normals that are nowhere interpolated to anything else than

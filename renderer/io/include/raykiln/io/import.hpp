@@ -37,6 +37,7 @@ enum class ImportErrorCode {
   kInvalidValue,
   kInvalidGlb,
   kBufferOutOfRange,
+  kInvalidPicture,
   kNodeCycle,
   kUnsupportedVersion,
   kUnsupportedExtension,

@@ -13,7 +13,13 @@ struct ImportLimits {
   std::size_t max_cameras = 1'000;
   std::size_t max_point_lights = 100'000;
   double max_coordinate = 1e15;  ///< largest |world coordinate|, metres
-  double max_radiance = 1e30;    ///< largest emission, intensity or background component
+  double max_radiance = 1e30;    ///< largest component of any emission, light or background
+
+  std::uint64_t max_environment_texels = std::uint64_t{1} << 24;
+  std::uint64_t max_texture_texels = std::uint64_t{1} << 26;  ///< of one picture
+  std::uint64_t max_texture_bytes = std::uint64_t{1} << 30;   ///< of all, decoded
+  std::size_t max_textures = 10'000;
+  std::uint64_t max_picture_file_bytes = std::uint64_t{512} << 20;
 
   std::uint64_t max_file_bytes = std::uint64_t{8} << 30;  ///< of one OBJ
   std::uint64_t max_buffer_bytes = std::uint64_t{4} << 30;  ///< of all glTF buffers together

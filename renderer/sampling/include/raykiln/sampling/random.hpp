@@ -22,9 +22,9 @@ enum class Dimension : std::uint32_t {
   kLightU = 10,
   kLightV = 11,
   kRoulette = 12,
-  kSpare0 = 13,
-  kSpare1 = 14,
-  kSpare2 = 15,
+  kEnvironmentU = 13,
+  kEnvironmentV = 14,
+  kSpare = 15,
   kCount = 16
 };
 

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "raykiln/math/ray.hpp"
 #include "raykiln/math/vec.hpp"
+#include "raykiln/scene/light.hpp"
 
 namespace raykiln::render {
 
@@ -35,12 +37,6 @@ struct Material {
   Rgb emission{0.0F};                ///< radiance, W sr^-1 m^-2, both sides
 };
 
-struct PointLight {
-  std::string name;
-  Vec3f position{0.0F};  ///< relative to Scene::origin
-  Rgb intensity{0.0F};   ///< W sr^-1
-};
-
 /// Pinhole. right, up, forward are orthonormal (right = forward x up); fov is the full vertical
 /// angle. Pixel (0, 0) is at the top left. In double: from 10^6 times the scene's size one step of a
 /// float eye, or of a float direction, is as long as 6 % of the scene.
@@ -53,12 +49,19 @@ struct Camera {
   double fov_y_rad = 0.7;
 };
 
+struct EnvironmentMap;   // environment_map.hpp
+struct SurfaceTextures;  // surface_textures.hpp
+
 struct Scene {
   TriangleMesh mesh;
   std::vector<Material> materials;
   std::vector<PointLight> point_lights;
+  std::vector<SpotLight> spot_lights;
+  std::vector<DirectionalLight> directional_lights;
   std::vector<Camera> cameras;  ///< never empty: a default one frames the bounds
   Rgb background{0.0F};         ///< radiance of a ray that meets nothing
+  std::shared_ptr<const EnvironmentMap> environment{};  ///< adds to the background; null: none
+  std::shared_ptr<const SurfaceTextures> textures{};    ///< null: no material has any
   Vec3d origin{0.0};            ///< world position of the local (0, 0, 0): positions were re-centred
   Bounds3f bounds;              ///< of mesh.positions that triangles use
 };

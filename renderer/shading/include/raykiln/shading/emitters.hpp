@@ -1,7 +1,8 @@
-// What shines: point lights, and triangles whose material emits.
+// What shines: lights without a surface, triangles whose material emits, the environment.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,8 @@
 
 namespace raykiln::render {
 
+class EnvironmentLight;  // environment_light.hpp
+
 /// A point on an emitting triangle.
 struct EmitterSample {
   SurfacePoint point;
@@ -21,7 +24,8 @@ struct EmitterSample {
 
 /// Emitting triangles, drawn with probability proportional to area times the largest channel of
 /// their radiance (not luminance: permuting channels must not change a draw), then uniformly by
-/// area; and the point lights that shine at all. Triangles of zero area or radiance are left out.
+/// area; the lights without a surface that shine at all; the environment map, if there is one.
+/// Triangles of zero area or radiance are left out.
 class Emitters {
  public:
   explicit Emitters(const Scene& scene);
@@ -34,17 +38,27 @@ class Emitters {
   }
 
   [[nodiscard]] std::span<const PointLight> point_lights() const { return point_lights_; }
+  [[nodiscard]] std::span<const SpotLight> spot_lights() const { return spot_lights_; }
+  [[nodiscard]] std::span<const DirectionalLight> directional_lights() const {
+    return directional_lights_;
+  }
+  /// Null without a map, and for a black one.
+  [[nodiscard]] const EnvironmentLight* environment() const { return environment_.get(); }
 
   /// Uses dimensions kLightChoice, kLightU and kLightV. Precondition: has_triangles().
   [[nodiscard]] EmitterSample sample(const Scene& scene, const VertexKey& vertex) const;
 
-  /// Density per area with which sample() finds a point of a triangle of this radiance, m^-2.
-  [[nodiscard]] double pdf_area(const Rgb& radiance) const;
+  /// Density per area with which sample() finds a point of a triangle of this material, m^-2.
+  [[nodiscard]] double pdf_area(std::uint32_t material) const { return pdf_area_[material]; }
 
  private:
   std::vector<std::uint32_t> triangles_;
   DiscreteDistribution distribution_;
+  std::vector<double> pdf_area_;  ///< one a material
   std::vector<PointLight> point_lights_;
+  std::vector<SpotLight> spot_lights_;
+  std::vector<DirectionalLight> directional_lights_;
+  std::shared_ptr<const EnvironmentLight> environment_;
 };
 
 /// Weight of a sample of density p when density q could have found it too: p^2 / (p^2 + q^2), the

@@ -1,0 +1,37 @@
+// Pictures that scenes bring along, from bytes of strangers: textures and environment maps.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace raykiln::render {
+
+enum class PictureFormat : std::uint8_t { kPng, kJpeg, kExr, kHdr };
+
+/// Told by the first bytes, never by a name.
+[[nodiscard]] std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes);
+[[nodiscard]] std::string_view name(PictureFormat format);
+
+/// Three values a pixel, row 0 at the top; alpha is left out and has not been multiplied in. One of
+/// the two is filled.
+struct PictureFile {
+  PictureFormat format = PictureFormat::kPng;
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> srgb8;  ///< PNG and JPEG of 8 bits: sRGB display values
+  std::vector<float> linear;  ///< EXR and HDR as they are; PNG of 16 bits with sRGB's curve undone
+};
+struct PictureFileError {
+  std::string message;
+};
+
+/// A PNG, JPEG, EXR or Radiance HDR picture of at most `max_pixels`. The header is checked before
+/// anything of the picture's size is allocated. Linear values may be anything a file can hold.
+[[nodiscard]] std::variant<PictureFile, PictureFileError> read_picture_file(
+    std::span<const std::uint8_t> bytes, std::uint64_t max_pixels);
+
+}  // namespace raykiln::render

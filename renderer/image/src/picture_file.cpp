@@ -1,0 +1,141 @@
+#include "raykiln/image/picture_file.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "colour_channels.hpp"
+#include "raykiln/math/srgb.hpp"
+
+namespace raykiln::render {
+namespace {
+
+constexpr int kMostChannels = 64;
+
+struct Magic {
+  std::string_view bytes;
+  PictureFormat format;
+};
+constexpr std::array<Magic, 5> kMagics{{{"\x89PNG", PictureFormat::kPng},
+                                        {"\xFF\xD8\xFF", PictureFormat::kJpeg},
+                                        {"\x76\x2F\x31\x01", PictureFormat::kExr},
+                                        {"#?RADIANCE", PictureFormat::kHdr},
+                                        {"#?RGBE", PictureFormat::kHdr}}};
+
+std::string size_text(const OIIO::ImageSpec& spec) {
+  return std::to_string(spec.width) + " x " + std::to_string(spec.height);
+}
+
+std::optional<PictureFileError> check(const OIIO::ImageSpec& spec, std::uint64_t max_pixels) {
+  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.deep) {
+    return PictureFileError{"it holds no flat picture"};
+  }
+  const auto pixels =
+      static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  if (pixels > max_pixels || spec.nchannels > kMostChannels) {
+    return PictureFileError{"it is too large: " + size_text(spec) + ", " +
+                            std::to_string(spec.nchannels) + " channels; at most " +
+                            std::to_string(max_pixels) + " pixels are read"};
+  }
+  return std::nullopt;
+}
+
+/// Channels `from` .. `to` into the front of every pixel of three values.
+template <class Value>
+bool read_channels(OIIO::ImageInput& input, std::size_t from, std::size_t to, OIIO::TypeDesc type,
+                   Value* pixels) {
+  return input.read_image(0, 0, static_cast<int>(from), static_cast<int>(to), type, pixels,
+                          3 * sizeof(Value));
+}
+
+template <class Value>
+bool read_pixels(OIIO::ImageInput& input, const std::array<std::size_t, 3>& channels,
+                 OIIO::TypeDesc type, std::vector<Value>& values) {
+  const OIIO::ImageSpec spec = input.spec();
+  values.resize(3 * static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+  const std::size_t r = channels[0];
+  if (channels == std::array{r, r + 1, r + 2}) {
+    return read_channels(input, r, r + 3, type, values.data());
+  }
+  if (channels == std::array{r, r, r}) {
+    if (!read_channels(input, r, r + 1, type, values.data())) return false;
+    for (std::size_t i = 0; i < values.size(); i += 3) values[i + 1] = values[i + 2] = values[i];
+    return true;
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!read_channels(input, channels[c], channels[c] + 1, type, values.data() + c)) return false;
+  }
+  return true;
+}
+
+bool read_values(OIIO::ImageInput& input, const std::array<std::size_t, 3>& channels,
+                 PictureFile& picture) {
+  const bool display =
+      picture.format == PictureFormat::kPng || picture.format == PictureFormat::kJpeg;
+  if (display && input.spec().format == OIIO::TypeDesc::UINT8) {
+    return read_pixels(input, channels, OIIO::TypeDesc::UINT8, picture.srgb8);
+  }
+  if (!read_pixels(input, channels, OIIO::TypeDesc::FLOAT, picture.linear)) return false;
+  if (!display) return true;
+  for (float& value : picture.linear) {
+    value = static_cast<float>(linear_of_srgb(static_cast<double>(value)));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes) {
+  for (const Magic& magic : kMagics) {
+    const bool same = bytes.size() >= magic.bytes.size() &&
+                      std::equal(magic.bytes.begin(), magic.bytes.end(), bytes.begin(),
+                                 [](char c, std::uint8_t byte) {
+                                   return static_cast<std::uint8_t>(c) == byte;
+                                 });
+    if (same) return magic.format;
+  }
+  return std::nullopt;
+}
+
+std::string_view name(PictureFormat format) {
+  switch (format) {
+    case PictureFormat::kPng: return "png";
+    case PictureFormat::kJpeg: return "jpeg";
+    case PictureFormat::kExr: return "exr";
+    case PictureFormat::kHdr: break;
+  }
+  return "hdr";
+}
+
+std::variant<PictureFile, PictureFileError> read_picture_file(std::span<const std::uint8_t> bytes,
+                                                              std::uint64_t max_pixels) {
+  const auto format = picture_format(bytes);
+  if (!format) return PictureFileError{"it is neither PNG nor JPEG, EXR or HDR"};
+  OIIO::Filesystem::IOMemReader source(bytes.data(), bytes.size());
+  OIIO::ImageSpec wish;
+  wish["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
+  const std::string kind(name(*format));
+  const auto input = OIIO::ImageInput::create(kind);
+  if (!input || !input->set_ioproxy(&source)) return PictureFileError{"no reader for " + kind};
+  OIIO::ImageSpec spec;
+  if (!input->open("a." + kind, spec, wish)) {
+    return PictureFileError{"it cannot be read: " + input->geterror()};
+  }
+  if (auto error = check(input->spec(), max_pixels)) return *error;
+  const auto channels = colour_channels(input->spec().channelnames);
+  if (!channels) return PictureFileError{"it has no channels R, G, B"};
+  PictureFile picture{.format = *format,
+                      .width = input->spec().width,
+                      .height = input->spec().height,
+                      .srgb8 = {},
+                      .linear = {}};
+  if (!read_values(*input, *channels, picture)) {
+    return PictureFileError{"it cannot be read: " + input->geterror()};
+  }
+  return picture;
+}
+
+}  // namespace raykiln::render
