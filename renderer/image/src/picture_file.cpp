@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "colour_channels.hpp"
+#include "png_chunks.hpp"
 #include "raykiln/math/srgb.hpp"
 
 namespace raykiln::render {
@@ -114,6 +115,9 @@ std::variant<PictureFile, PictureFileError> read_picture_file(std::span<const st
                                                               std::uint64_t max_pixels) {
   const auto format = picture_format(bytes);
   if (!format) return PictureFileError{"it is neither PNG nor JPEG, EXR or HDR"};
+  if (*format == PictureFormat::kPng && !png_is_whole(bytes)) {
+    return PictureFileError{"the PNG file is cut short or damaged"};
+  }
   OIIO::Filesystem::IOMemReader source(bytes.data(), bytes.size());
   OIIO::ImageSpec wish;
   wish["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
