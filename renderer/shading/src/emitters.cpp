@@ -49,10 +49,11 @@ Emitters::Emitters(const Scene& scene) {
     power.push_back(weight);
   }
   distribution_ = DiscreteDistribution(power);
-  pdf_area_.reserve(scene.materials.size());
-  for (const Material& material : scene.materials) {
-    pdf_area_.push_back(has_triangles() ? largest_channel(material.emission) / distribution_.total()
-                                        : 0.0);
+  if (has_triangles()) {
+    pdf_area_.reserve(scene.materials.size());
+    for (const Material& material : scene.materials) {
+      pdf_area_.push_back(largest_channel(material.emission) / distribution_.total());
+    }
   }
   point_lights_ = shining(scene.point_lights, &PointLight::intensity);
   spot_lights_ = shining(scene.spot_lights, &SpotLight::intensity);

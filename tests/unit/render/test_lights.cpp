@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "raykiln/sampling/warp.hpp"
+#include "raykiln/shading/emitters.hpp"
 #include "support/scene_pieces.hpp"
 
 namespace raykiln::render {

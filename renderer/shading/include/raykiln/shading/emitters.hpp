@@ -31,10 +31,12 @@ class Emitters {
   explicit Emitters(const Scene& scene);
 
   [[nodiscard]] bool has_triangles() const { return !distribution_.empty(); }
-  /// Of the tables; 0 where nothing shines.
+  /// Of the tables, but for the environment's; 0 where nothing shines.
   [[nodiscard]] std::size_t bytes() const {
     return triangles_.capacity() * sizeof(std::uint32_t) + distribution_.bytes() +
-           point_lights_.capacity() * sizeof(PointLight);
+           pdf_area_.capacity() * sizeof(double) + point_lights_.capacity() * sizeof(PointLight) +
+           spot_lights_.capacity() * sizeof(SpotLight) +
+           directional_lights_.capacity() * sizeof(DirectionalLight);
   }
 
   [[nodiscard]] std::span<const PointLight> point_lights() const { return point_lights_; }
@@ -49,12 +51,13 @@ class Emitters {
   [[nodiscard]] EmitterSample sample(const Scene& scene, const VertexKey& vertex) const;
 
   /// Density per area with which sample() finds a point of a triangle of this material, m^-2.
+  /// Precondition: has_triangles().
   [[nodiscard]] double pdf_area(std::uint32_t material) const { return pdf_area_[material]; }
 
  private:
   std::vector<std::uint32_t> triangles_;
   DiscreteDistribution distribution_;
-  std::vector<double> pdf_area_;  ///< one a material
+  std::vector<double> pdf_area_;  ///< one a material; empty without triangles
   std::vector<PointLight> point_lights_;
   std::vector<SpotLight> spot_lights_;
   std::vector<DirectionalLight> directional_lights_;
