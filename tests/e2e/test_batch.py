@@ -2,8 +2,9 @@
 
 import json
 import shutil
+import signal
 import subprocess
-import xml.etree.ElementTree as ET
+import time
 
 import jsonschema
 import pytest
@@ -11,7 +12,9 @@ import yaml
 
 from support import scenes
 from support.daemon import ROOT, SLOW
-from test_cli import raykiln
+from support.junit import read_junit
+from test_cli import PROGRAM, raykiln
+from test_reuse import counter
 
 FILE_SCHEMA = json.loads((ROOT / "proto" / "batch.schema.json").read_text())
 REPORT_SCHEMA = json.loads((ROOT / "proto" / "batch-report.schema.json").read_text())
@@ -50,21 +53,8 @@ def run(path, *words, timeout=300):
 
 
 def check_junit(path, counts):
-    """The structure that CI systems read: suites of suites of cases with counts that add up."""
-    root = ET.parse(path).getroot()
-    assert root.tag == "testsuites"
-    (suite,) = root
-    assert {k: int(suite.get(k)) for k in ("tests", "failures", "errors", "skipped")} == counts
-    assert float(suite.get("time")) >= 0
-    cases = list(suite)
-    assert len(cases) == counts["tests"]
-    for case in cases:
-        assert case.tag == "testcase" and case.get("name") and case.get("classname")
-        assert float(case.get("time")) >= 0
-        kinds = [child.tag for child in case]
-        assert set(kinds) <= {"failure", "error", "skipped", "system-out"} and kinds[-1] == "system-out"
-    for tag, key in (("failure", "failures"), ("error", "errors"), ("skipped", "skipped")):
-        assert len(suite.findall(f"testcase/{tag}")) == counts[key]
+    suite = read_junit(path)
+    assert {k: int(suite.get(k)) for k in counts} == counts
 
 
 def verdicts(report):
@@ -96,9 +86,17 @@ def copy(gallery, tmp_path):
 OTHER_SEED = {"width": 48, "height": 36, "stop": {"samples": 32}, "seed": 2}
 
 
-def test_six_scenes_one_broken_one_changed(gallery, tmp_path):
+@pytest.fixture(params=["local", "server"])
+def where(request):
+    """The words that say who renders."""
+    if request.param == "local":
+        return ("--local",)
+    return ("--server", request.getfixturevalue("api").daemon.url)
+
+
+def test_six_scenes_one_broken_one_changed(gallery, tmp_path, where):
     folder = copy(gallery, tmp_path)
-    done, report = run(plan(folder, defaults=OTHER_SEED), "--local")
+    done, report = run(plan(folder, defaults=OTHER_SEED), *where)
     assert done.returncode == 4, done.stderr
     assert verdicts(report) == {"one": "same", "two": "same", "three": "same", "four": "same",
                                 "changed": "differs", "broken": "failed"}
@@ -130,23 +128,145 @@ window.addEventListener('load', () => {
     assert "CONSOLE" not in shown.stderr, shown.stderr
 
 
-def test_exit_codes_follow_the_gravest_outcome(gallery, tmp_path):
+def test_exit_codes_follow_the_gravest_outcome(gallery, tmp_path, where):
     folder = copy(gallery, tmp_path)
-    assert run(plan(folder, ("one", "two"), defaults=OTHER_SEED), "--local")[0].returncode == 0
-    assert run(plan(folder, ("one", "changed"), defaults=OTHER_SEED), "--local")[0].returncode == 11
-    assert run(plan(folder, ("changed", "broken"), defaults=OTHER_SEED), "--local")[0].returncode == 4
+    assert run(plan(folder, ("one", "two"), defaults=OTHER_SEED), *where)[0].returncode == 0
+    assert run(plan(folder, ("one", "changed"), defaults=OTHER_SEED), *where)[0].returncode == 11
+    assert run(plan(folder, ("changed", "broken"), defaults=OTHER_SEED), *where)[0].returncode == 4
+    hopeless = {**OTHER_SEED, "stop": {"samples": 64, "error": 0.0001}}
+    assert run(plan(folder, ("one",), defaults=hopeless), *where)[0].returncode == 12
     assert raykiln("batch", folder / "none.yaml", "--local").returncode == 3
     (folder / "bad.yaml").write_text("scenes: [{scene: a.obj, colour: red}]")
     bad = raykiln("batch", folder / "bad.yaml", "--local")
     assert bad.returncode == 2 and "colour" in bad.stderr and "line 1" in bad.stderr
 
 
-def test_fail_fast_skips_the_rest(gallery, tmp_path):
+def test_fail_fast_skips_the_rest(gallery, tmp_path, where):
     folder = copy(gallery, tmp_path)
-    done, report = run(plan(folder, ("broken", "one", "two"), fail_fast=True), "--local")
+    done, report = run(plan(folder, ("broken", "one", "two"), fail_fast=True, max_active=1), *where)
     assert done.returncode == 4
     assert verdicts(report) == {"broken": "failed", "one": "skipped", "two": "skipped"}
     check_junit(folder / "junit.xml", {"tests": 3, "failures": 0, "errors": 1, "skipped": 2})
+
+
+def test_an_unchanged_batch_is_reused_and_quick(launch, tmp_path):
+    """20 scenes: a few requests each, no sample, and the report says so."""
+    api = launch()
+    names = [f"s{n}" for n in range(20)]
+    for name in names:
+        write_scene(tmp_path / "scenes", name)
+    path = plan(tmp_path, names, max_active=16)
+    first, report = run(path, "--server", api.daemon.url)
+    assert first.returncode == 11 and report["counts"]["reused"] == 0
+    assert raykiln("approve", tmp_path / "report", "--all").returncode == 0
+    rendered, asked = counter(api, "raykiln_samples_total"), requests_of(api)
+    assert rendered == 20 * 48 * 36 * 32
+    begun = time.monotonic()
+    second, report = run(path, "--server", api.daemon.url)
+    seconds = time.monotonic() - begun
+    assert second.returncode == 0, second.stderr
+    assert report["counts"]["reused"] == 20 and all(p["reused"] and p["seconds"] == 0 for p in report["pictures"])
+    assert counter(api, "raykiln_samples_total") == rendered
+    assert requests_of(api) - asked <= 20 * 3 + 20, "job and picture of each, and a few looks at the batch"
+    assert "reused" in (tmp_path / "report" / "index.html").read_text() and "20 reused" in second.stderr
+    print(f"20 unchanged scenes: {seconds:.2f} s")
+    again, report = run(path, "--no-reuse", "--server", api.daemon.url)
+    assert again.returncode == 0 and report["counts"]["reused"] == 0
+    assert counter(api, "raykiln_samples_total") == 2 * rendered
+
+
+@pytest.mark.measured
+def test_an_unchanged_batch_takes_under_two_seconds(launch, tmp_path):
+    api = launch()
+    names = [f"s{n}" for n in range(20)]
+    for name in names:
+        write_scene(tmp_path / "scenes", name)
+    path = plan(tmp_path, names, max_active=16)
+    run(path, "--server", api.daemon.url)
+    begun = time.monotonic()
+    assert run(path, "--server", api.daemon.url)[1]["counts"]["reused"] == 20
+    assert time.monotonic() - begun < 2.0 * SLOW
+
+
+def requests_of(api):
+    """Requests that the daemon has answered."""
+    lines = [line for line in api.get("/metrics").text.splitlines() if line.startswith("raykiln_http_requests_total")]
+    assert lines
+    return sum(float(line.rsplit(" ", 1)[1]) for line in lines)
+
+
+ENDLESS = {"width": 128, "height": 96, "stop": {"samples": 1000000}, "seed": 1}
+
+
+def start(path, api, *words):
+    """A batch that goes on for ever, and its id."""
+    program = subprocess.Popen([PROGRAM, "batch", str(path), "--server", api.daemon.url, "--wait", *map(str, words)],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
+    line = program.stderr.readline()
+    assert line.startswith("batch b_"), line
+    return program, line.split()[1]
+
+
+def batch_state(api, batch):
+    return api.json(f"/v1/batches/{batch}")["state"]
+
+
+def test_ctrl_c_detaches_and_the_batch_goes_on(gallery, tmp_path, launch):
+    api, folder = launch(), copy(gallery, tmp_path)
+    path = plan(folder, ("one", "two"), defaults=ENDLESS)
+    program, batch = start(path, api, "--junit", folder / "junit.xml")
+    program.send_signal(signal.SIGINT)
+    out, err = program.communicate(timeout=60 * SLOW)
+    assert program.returncode == 13 and out.strip() == batch and f"--resume {batch}" in err
+    assert batch_state(api, batch) == "running"
+    check_junit(folder / "junit.xml", {"tests": 2, "skipped": 2})
+    late = raykiln("batch", path, "--server", api.daemon.url, "--wait", "--resume", batch, "--timeout", "0.5")
+    assert late.returncode == 13 and late.stdout.strip() == batch
+    # A batch that was sent and not to be waited for.
+    sent = raykiln("batch", path, "--server", api.daemon.url, "--idempotency-key", "once")
+    assert sent.returncode == 0 and sent.stdout.startswith("b_")
+    assert raykiln("batch", path, "--server", api.daemon.url, "--idempotency-key", "once").stdout == sent.stdout
+
+
+def test_ctrl_c_cancels_where_that_is_asked_for(gallery, tmp_path, launch):
+    api, folder = launch(), copy(gallery, tmp_path)
+    path = plan(folder, ("one", "two"), defaults=ENDLESS)
+    program, batch = start(path, api, "--cancel-on-interrupt", "--report", folder / "out.json")
+    program.send_signal(signal.SIGINT)
+    program.communicate(timeout=60 * SLOW)
+    assert program.returncode == 5 and batch_state(api, batch) == "cancelled"
+    assert set(verdicts(json.loads((folder / "out.json").read_text())).values()) == {"cancelled"}
+
+
+def test_what_failed_is_run_again(gallery, tmp_path, launch):
+    api, folder = launch(), copy(gallery, tmp_path)
+    path = plan(folder, ("one", "two"), defaults=OTHER_SEED)
+    done, report = run(path, "--server", api.daemon.url)
+    assert done.returncode == 0
+    batch = report["batch"]
+    done, report = run(path, "--server", api.daemon.url, "--resume", batch, "--rerun")
+    assert done.returncode == 0 and report["batch"] == batch
+
+
+def test_a_server_that_is_not_there(gallery, tmp_path):
+    path = plan(copy(gallery, tmp_path), ("one",))
+    done = raykiln("batch", path, "--wait", "--server", "http://127.0.0.1:9")
+    assert done.returncode == 6, done.stderr
+
+
+def test_progress_without_a_terminal_is_plain_lines(gallery, tmp_path, where):
+    done, _ = run(plan(copy(gallery, tmp_path), ("one", "two"), defaults=OTHER_SEED), *where)
+    assert "\x1b" not in done.stderr and "\r" not in done.stderr
+    assert {line.split(":")[0] for line in done.stderr.splitlines()} >= {"one", "two"}
+
+
+def test_bars_on_a_terminal(gallery, tmp_path, api):
+    path = plan(copy(gallery, tmp_path), ("one", "two"), defaults={**ENDLESS, "stop": {"samples": 60}})
+    command = [PROGRAM, "batch", str(path), "--server", api.daemon.url, "--wait", "--no-reuse"]
+    shown = subprocess.run(["script", "-qec", " ".join(command), "/dev/null"], capture_output=True, text=True, check=False,
+                           timeout=120 * SLOW, stdin=subprocess.DEVNULL, env={"PATH": "/usr/bin:/bin", "NO_COLOR": "1"})
+    assert "all [" in shown.stdout and "/2" in shown.stdout, shown.stdout[-800:]
+    assert "\x1b[3" not in shown.stdout, "no colours"
 
 
 def test_approve_takes_names(gallery, tmp_path):

@@ -23,9 +23,29 @@ def gitlab_lines():
     return yaml.safe_load((CI / "gitlab.yml").read_text())["pictures"]["script"]
 
 
-@pytest.mark.parametrize("lines", [github_lines(), gitlab_lines()], ids=["github", "gitlab"])
-def test_the_shell_lines_run(lines, tmp_path):
-    assert lines
+def github_kept():
+    steps = yaml.safe_load((CI / "github.yml").read_text())["jobs"]["pictures"]["steps"]
+    (path,) = [step["with"]["path"] for step in steps if step.get("uses", "").startswith("actions/upload-artifact")]
+    return path.split()
+
+
+def gitlab_kept():
+    kept = yaml.safe_load((CI / "gitlab.yml").read_text())["pictures"]["artifacts"]
+    return [*kept["paths"], kept["reports"]["junit"]]
+
+
+def caches():
+    """Folders that both examples keep from run to run."""
+    steps = yaml.safe_load((CI / "github.yml").read_text())["jobs"]["pictures"]["steps"]
+    (github,) = [step["with"]["path"] for step in steps if step.get("uses", "").startswith("actions/cache")]
+    (gitlab,) = yaml.safe_load((CI / "gitlab.yml").read_text())["pictures"]["cache"]["paths"]
+    return github, gitlab
+
+
+@pytest.mark.parametrize("lines, kept", [(github_lines(), github_kept()), (gitlab_lines(), gitlab_kept())],
+                         ids=["github", "gitlab"])
+def test_the_shell_lines_run(lines, kept, tmp_path):
+    assert lines and kept
     write_scene(tmp_path / "scenes", "box")
     shutil.copy(CI / "scenes.yaml", tmp_path)
     environment = {**os.environ, "PATH": f"{BIN.resolve()}:{os.environ['PATH']}", "GITHUB_ACTIONS": "true",
@@ -42,10 +62,8 @@ def test_the_shell_lines_run(lines, tmp_path):
     assert second.returncode == 0, second.stdout + second.stderr
     assert ET.parse(tmp_path / "junit.xml").getroot()[0].get("failures") == "0"
     assert (tmp_path / "report" / "index.html").exists()
-
-
-def test_the_artifacts_are_those_that_are_written():
-    github = yaml.safe_load((CI / "github.yml").read_text())["jobs"]["pictures"]["steps"][-1]["with"]["path"]
-    gitlab = yaml.safe_load((CI / "gitlab.yml").read_text())["pictures"]["artifacts"]
-    assert github.split() == ["report", "junit.xml"]
-    assert gitlab["paths"] == ["report"] and gitlab["reports"]["junit"] == "junit.xml"
+    # What a run writes is kept, what is kept is written, and the store of before is used again.
+    new = {path.name for path in tmp_path.iterdir()} - {"scenes", "scenes.yaml", "references", "summary.md"}
+    unkept = {"raykilnd.url", "raykilnd.log", *caches()}
+    assert new - unkept == set(kept) and (tmp_path / caches()[0] / "raykiln.db").exists()
+    assert "1 reused" in second.stderr

@@ -10,6 +10,7 @@ import yaml
 from support import scenes
 from support.api import GLB, ZIP
 from support.daemon import ROOT
+from support.sse import EventStream
 
 DOCUMENT_PATH = ROOT / "proto" / "openapi.yaml"
 DOCUMENT = yaml.safe_load(DOCUMENT_PATH.read_text())
@@ -96,6 +97,7 @@ def test_every_operation(replay):
     scene = replay_scenes(replay)
     job = replay_jobs(replay, scene)
     replay_pictures(replay, job)
+    replay_batches(replay, scene)
     replay_server(replay, job)
     replay("delete", "/v1/scenes/{scene}", 204, {"scene": scene})
     replay("delete", "/v1/scenes/{scene}", 404, {"scene": scene})
@@ -150,6 +152,7 @@ def replay_jobs(replay, scene) -> str:
     while state not in ("completed", "failed"):
         state = replay("get", "/v1/jobs/{job}", 200, {"job": job}).json()["state"]
     assert state == "completed"
+    replay(*create, 200, json={**request, "reuse": True})
     replay("get", "/v1/jobs/{job}", 404, {"job": "j_none"})
     replay("get", "/v1/jobs", 200, params={"state": "completed"})
     replay("get", "/v1/jobs", 400, params={"state": "asleep"})
@@ -200,6 +203,42 @@ def replay_pictures(replay, job):
     replay(*sample, 404, {"job": "j_none"}, params=first)
 
 
+def replay_batches(replay, scene):
+    create, gone = ("post", "/v1/batches"), "2" * 64
+    request = {"defaults": {"width": 32, "height": 24, "stop": {"samples": 4}},
+               "scenes": [{"scene": scene, "name": "there", "cameras": [0], "settings": [{"name": "low"}]},
+                          {"scene": gone, "name": "gone"}]}
+    validate(request, {"$ref": "#/components/schemas/BatchRequest"})
+    key = {"Idempotency-Key": "contract"}
+    batch = replay(*create, 202, json=request, headers=key).json()["id"]
+    replay(*create, 409, json={**request, "priority": 1}, headers=key)
+    replay(*create, 422, json={**request, "scenes": []})
+    replay(*create, 400, data=b"{", headers=JSON)
+    replay(*create, 415, data=b"{}", headers={"Content-Type": "text/plain"})
+    replay(*create, 413, data=b" " * 1_200_000, headers=JSON)
+    one, known = "/v1/batches/{batch}", {"batch": batch}
+    while replay("get", one, 200, known).json()["state"] == "running":
+        pass
+    replay("get", one, 404, {"batch": "b_none"})
+    replay("get", "/v1/batches", 200, params={"limit": 1})
+    replay("get", "/v1/batches", 400, params={"limit": 0})
+    with EventStream(replay.api.daemon.port, f"/v1/batches/{batch}/events") as stream:
+        final = stream.last()
+    validate(final.data, {"$ref": "#/components/schemas/Batch"})
+    replay("get", one + "/events", 200, known)
+    replay("get", one + "/events", 204, known, headers={"Last-Event-ID": final.id})
+    replay("get", one + "/events", 404, {"batch": "b_none"})
+    replay("post", one + "/cancel", 202, known)
+    replay("post", one + "/cancel", 404, {"batch": "b_none"})
+    replay("post", one + "/rerun", 202, known)
+    replay("post", one + "/rerun", 404, {"batch": "b_none"})
+    missing = ("post", "/v1/missing-scenes")
+    assert replay(*missing, 200, json={"scenes": [scene, gone]}).json() == {"missing": [gone]}
+    replay(*missing, 422, json={"scenes": ["x"]})
+    replay("get", "/batches", 200)
+    replay("get", "/batches/{batch}", 200, known)
+
+
 def replay_server(replay, job):
     served = replay("get", "/openapi.yaml", 200)
     assert served.content == DOCUMENT_PATH.read_bytes()
@@ -221,9 +260,10 @@ def test_the_documents_own_examples_are_valid():
         for prefix, schema in schemas.items():
             if name.startswith(prefix):
                 validate(example["value"], {"$ref": f"#/components/schemas/{schema}"})
-    for example in OPERATIONS[("post", "/v1/jobs")]["requestBody"]["content"][
-            "application/json"]["examples"].values():
-        validate(example["value"], {"$ref": "#/components/schemas/JobRequest"})
+    for path, schema in (("/v1/jobs", "JobRequest"), ("/v1/batches", "BatchRequest")):
+        body = OPERATIONS[("post", path)]["requestBody"]["content"]["application/json"]
+        for example in body["examples"].values():
+            validate(example["value"], {"$ref": f"#/components/schemas/{schema}"})
 
 
 def test_metrics_are_prometheus_text(api, samples):

@@ -217,6 +217,14 @@ class MemoryStore final : public server::Store {
     }
     return std::optional<server::JobRecord>();
   }
+  server::Result<std::optional<server::JobRecord>> job_with_result(const std::string& digest) override {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& job : newest_first()) {
+      const bool wanted = job.state == server::JobState::kCompleted && job.result_digest == digest;
+      if (!digest.empty() && wanted) return std::optional(job);
+    }
+    return std::optional<server::JobRecord>();
+  }
   server::Result<std::vector<server::JobRecord>> jobs(const server::JobQuery& query) override {
     const std::scoped_lock lock(mutex_);
     std::vector<server::JobRecord> page;

@@ -1,7 +1,7 @@
 // Typed client of the server's HTTP API. Every failure is a Problem.
 
 import {
-  is_job, is_scene, type Job, type JobAccuracy, type JobPage, type JobRequest, type Layer, type Scene,
+  is_batch, is_batch_summary, is_job, is_scene, type Batch, type BatchSummary, type Job, type JobAccuracy, type JobPage, type JobRequest, type Layer, type Scene,
 } from "./contract";
 import { parse_problem, Problem, unreachable } from "./problem";
 import type { UploadPlan } from "./upload_list";
@@ -86,6 +86,26 @@ export async function extend_job(id: string, error: number): Promise<Job> {
       method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ stop: { error } }),
     }),
   );
+}
+
+/** The newest batches: one page of them. */
+export async function list_batches(signal?: AbortSignal): Promise<BatchSummary[]> {
+  return list_in(await json("/v1/batches", signal ? { signal } : {}), "batches").filter(is_batch_summary);
+}
+
+const batch_path = (id: string): string => `/v1/batches/${encodeURIComponent(id)}`;
+
+export async function get_batch(id: string, signal?: AbortSignal): Promise<Batch> {
+  return as_batch(await json(batch_path(id), signal ? { signal } : {}));
+}
+
+export async function command_batch(id: string, what: "cancel" | "rerun"): Promise<Batch> {
+  return as_batch(await json(`${batch_path(id)}/${what}`, { method: "POST" }));
+}
+
+function as_batch(value: unknown): Batch {
+  if (is_batch(value)) return value;
+  throw new Problem(200, "bad_answer", "The server's answer is not a batch", "");
 }
 
 function as_job(value: unknown): Job {

@@ -3,12 +3,12 @@
 
 import { announcement } from "./announce";
 import * as api from "./api";
-import { is_final, type Job, type Layer } from "./contract";
+import { is_final, type Batch, type Job, type Layer } from "./contract";
 import { follow_job, type Following } from "./events";
 import { check_form, from_job, place_errors, to_request, type FormKey } from "./form";
 import { ImageFeed } from "./image";
 import { shortcut, type Shortcut } from "./keys";
-import { poll_jobs } from "./list_poll";
+import { poll, type PollHandlers } from "./list_poll";
 import { explain, Problem } from "./problem";
 import { parse_route, route_path, same_route, type Route } from "./route";
 import { initial_state, reduce, type Action, type State } from "./state";
@@ -89,20 +89,60 @@ export class App implements Commands {
     this.image_.reset();
     this.following_ = null;
     this.poll_ = null;
-    if (route.page === "job") this.follow(route.id);
-    else this.watch_list();
+    switch (route.page) {
+      case "home": this.watch_list(); break;
+      case "job": this.follow(route.id); break;
+      case "batches": this.watch_batches(); break;
+      case "batch": this.watch_batch(route.id); break;
+    }
     this.dispatch({ type: "tick", now_ms: Date.now() });
   }
 
-  private watch_list(): void {
-    this.poll_ = poll_jobs({
+  private watch<Page>(
+    ask: PollHandlers<Page>["ask"], take: (page: Page) => void, is_busy: () => boolean,
+  ): void {
+    this.poll_ = poll<Page>({
+      ask, is_busy,
       on_page: (page) => {
         this.line_up();
-        this.dispatch({ type: "jobs", page, older: false, now_ms: Date.now() });
+        take(page);
       },
       on_lost: (problem, retry_at_ms) => this.line_down(problem, retry_at_ms),
-      is_busy: () => Object.values(this.state_.jobs).some((job) => !is_final(job.state)),
+      on_refused: (problem) => {
+        this.dispatch({ type: "line", line: { state: "ended", retry_at_ms: 0, reason: "" } });
+        this.dispatch({ type: "missing", reason: explain(problem) });
+      },
     });
+  }
+
+  private watch_list(): void {
+    this.watch((signal) => api.list_jobs(null, signal),
+      (page) => this.dispatch({ type: "jobs", page, older: false, now_ms: Date.now() }),
+      () => Object.values(this.state_.jobs).some((job) => !is_final(job.state)));
+  }
+
+  private watch_batches(): void {
+    this.watch((signal) => api.list_batches(signal),
+      (batches) => this.dispatch({ type: "batches", batches }),
+      () => this.state_.batches?.some((batch) => batch.state === "running") ?? false);
+  }
+
+  private watch_batch(id: string): void {
+    this.watch((signal) => api.get_batch(id, signal), (batch) => this.batch_news(batch),
+      () => this.state_.batch?.state === "running");
+  }
+
+  private batch_news(batch: Batch): void {
+    const before = this.state_.batch;
+    this.dispatch({ type: "batch", batch });
+    if (before && before.state !== batch.state) this.shell_.say(`The batch is ${batch.state}`);
+  }
+
+  command_batch(id: string, what: "cancel" | "rerun"): void {
+    api.command_batch(id, what).then((batch) => {
+      this.batch_news(batch);
+      this.poll_?.now();
+    }, (error: unknown) => this.command_failed(error));
   }
 
   private follow(id: string): void {
@@ -337,6 +377,7 @@ export class App implements Commands {
     switch (what) {
       case "help": return this.shell_.help.open();
       case "home": return this.navigate("/");
+      case "batches": return this.navigate("/batches");
       case "upload": return this.shell_.uploads.choose();
       case "form": {
         this.navigate("/");

@@ -185,6 +185,31 @@ export interface JobPage {
   next_cursor: string | null;
 }
 
+export type ItemState = "waiting" | "active" | "completed" | "failed" | "cancelled" | "skipped";
+
+/** Many pictures together, as the list has them. */
+export interface BatchSummary {
+  id: string;
+  name: string;
+  state: "running" | "completed" | "failed" | "cancelled";
+  revision: number;
+  created_at: string;
+  finished_at: string | null;
+  counts: Record<ItemState | "reused" | "total", number>;
+}
+
+export interface BatchItem {
+  name: string;
+  state: ItemState;
+  job: string | null;
+  reused: boolean;
+  error: ProblemView | null;
+}
+
+export interface Batch extends BatchSummary {
+  items: BatchItem[];
+}
+
 const kFinal: readonly JobState[] = ["completed", "failed", "cancelled"];
 
 export const is_final = (state: JobState): boolean => kFinal.includes(state);
@@ -200,6 +225,14 @@ export function is_job(value: unknown): value is Job {
 
 export const is_scene = (value: unknown): value is Scene =>
   is_object(value) && typeof value["id"] === "string";
+
+export const is_batch_summary = (value: unknown): value is BatchSummary =>
+  is_object(value) && typeof value["id"] === "string" && is_object(value["counts"]);
+
+export const is_batch = (value: unknown): value is Batch =>
+  is_batch_summary(value) && Array.isArray((value as unknown as Record<string, unknown>)["items"]);
+
+export const batch_title = (batch: BatchSummary): string => batch.name || `Batch ${batch.id.slice(0, 10)}`;
 
 /** What to call a job: its own name, its scene's, or the start of its id. */
 export function job_title(job: Job, scene: Scene | undefined): string {

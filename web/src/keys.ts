@@ -1,7 +1,7 @@
 // Keyboard shortcuts: one table for the handler and for the help.
 
 export type Shortcut =
-  | "help" | "home" | "upload" | "form" | "darker" | "brighter" | "reset" | "fit" | "actual"
+  | "help" | "home" | "batches" | "upload" | "form" | "darker" | "brighter" | "reset" | "fit" | "actual"
   | "cancel" | "again" | "png" | "exr";
 
 export interface Key {
@@ -14,6 +14,7 @@ export interface Key {
 export const kKeys: readonly Key[] = [
   { key: "?", does: "help", says: "Show this help", where: "anywhere" },
   { key: "h", does: "home", says: "All jobs", where: "anywhere" },
+  { key: "b", does: "batches", says: "All batches", where: "anywhere" },
   { key: "u", does: "upload", says: "Choose scene files", where: "anywhere" },
   { key: "n", does: "form", says: "New render", where: "anywhere" },
   { key: "[", does: "darker", says: "Half a stop darker", where: "job" },

@@ -1,22 +1,23 @@
-// Keeps the list of jobs fresh while it is on screen: often while something
+// Keeps what is on screen fresh by asking again: often while something
 // runs, seldom otherwise, not at all in a hidden tab.
 
-import { list_jobs } from "./api";
 import { backoff_ms } from "./backoff";
 import { any_signal, pause } from "./events";
-import type { JobPage } from "./contract";
 import { Problem } from "./problem";
 
 const kBusyMs = 1000;
 const kIdleMs = 4000;
 
-export interface PollHandlers {
-  on_page(page: JobPage): void;
+export interface PollHandlers<Page> {
+  ask(signal: AbortSignal): Promise<Page>;
+  on_page(page: Page): void;
   on_lost(problem: Problem, retry_at_ms: number): void;
+  /** The server said something final, such as 404; nothing is asked again. */
+  on_refused?(problem: Problem): void;
   is_busy(): boolean;
 }
 
-export function poll_jobs(handlers: PollHandlers): { stop(): void; now(): void } {
+export function poll<Page>(handlers: PollHandlers<Page>): { stop(): void; now(): void } {
   const stopped = new AbortController();
   let waiting = new AbortController();
   const now = (): void => waiting.abort();
@@ -30,7 +31,7 @@ export function poll_jobs(handlers: PollHandlers): { stop(): void; now(): void }
     while (!stopped.signal.aborted) {
       let delay = handlers.is_busy() ? kBusyMs : kIdleMs;
       try {
-        const page = await list_jobs(null, stopped.signal);
+        const page = await handlers.ask(stopped.signal);
         if (stopped.signal.aborted) return;
         handlers.on_page(page);
         attempt = 0;
@@ -38,6 +39,7 @@ export function poll_jobs(handlers: PollHandlers): { stop(): void; now(): void }
       } catch (error) {
         if (stopped.signal.aborted) return;
         if (!(error instanceof Problem)) throw error;
+        if (error.status === 404 && handlers.on_refused) return handlers.on_refused(error);
         delay = Math.max(backoff_ms(attempt, Math.random()), (error.retry_after ?? 0) * 1000);
         if (attempt > 0) handlers.on_lost(error, Date.now() + delay);
         attempt += 1;

@@ -1,20 +1,28 @@
-// The page has two places: the home (form and list of jobs) and one job.
-// Both are served from the same index.html, so the path alone decides.
+// The page has four places: the home (form and list of jobs), one job, the list
+// of batches and one batch. All are served from the same index.html, so the path alone decides.
 
-export type Route = { page: "home" } | { page: "job"; id: string };
+export type Route =
+  | { page: "home" } | { page: "job"; id: string }
+  | { page: "batches" } | { page: "batch"; id: string };
 
 export function parse_route(path: string): Route {
-  const match = /^\/jobs\/([^/]+)\/?$/.exec(path);
-  if (!match?.[1]) return { page: "home" };
+  if (/^\/batches\/?$/.test(path)) return { page: "batches" };
+  const match = /^\/(job|batche)s\/([^/]+)\/?$/.exec(path);
+  if (!match?.[2]) return { page: "home" };
   try {
-    return { page: "job", id: decodeURIComponent(match[1]) };
+    return { page: match[1] === "job" ? "job" : "batch", id: decodeURIComponent(match[2]) };
   } catch {
-    return { page: "home" }; // a malformed percent escape names no job
+    return { page: "home" }; // a malformed percent escape names nothing
   }
 }
 
 export function route_path(route: Route): string {
-  return route.page === "home" ? "/" : `/jobs/${encodeURIComponent(route.id)}`;
+  switch (route.page) {
+    case "home": return "/";
+    case "batches": return "/batches";
+    case "job": return `/jobs/${encodeURIComponent(route.id)}`;
+    case "batch": return `/batches/${encodeURIComponent(route.id)}`;
+  }
 }
 
 export function same_route(a: Route, b: Route): boolean {

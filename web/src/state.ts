@@ -2,7 +2,7 @@
 // it. The view is a function of this value; nothing else is remembered.
 
 import {
-  is_final, type Job, type JobAccuracy, type JobPage, type Layer, type MapRange, type Scene,
+  is_final, type Batch, type BatchSummary, type Job, type JobAccuracy, type JobPage, type Layer, type MapRange, type Scene,
 } from "./contract";
 import { kDefaultForm, type FormErrors, type FormKey, type FormValues } from "./form";
 import { explain, type FieldProblem, type Problem } from "./problem";
@@ -35,6 +35,10 @@ export interface State {
   jobs_loaded: boolean;
   /** Where the list of older jobs goes on; null at its end. */
   older_cursor: string | null;
+  /** Newest first; null before the first answer. */
+  batches: BatchSummary[] | null;
+  /** The batch on the page, once it is known. */
+  batch: Batch | null;
   scenes: Record<string, Scene>;
   scenes_loaded: boolean;
   uploads: Upload[];
@@ -42,7 +46,7 @@ export interface State {
   form_errors: FormErrors;
   form_problem: string;
   submitting: boolean;
-  /** A page for a job that the server does not know. */
+  /** A page for a job or a batch that the server does not know. */
   missing: string;
   /** Outcome of the last command on the job page (cancel), when it failed. */
   command_problem: string;
@@ -61,6 +65,8 @@ export type Action =
   | { type: "line"; line: Line }
   | { type: "jobs"; page: JobPage; older: boolean; now_ms: number }
   | { type: "job"; job: Job; now_ms: number }
+  | { type: "batches"; batches: BatchSummary[] }
+  | { type: "batch"; batch: Batch }
   | { type: "missing"; reason: string }
   | { type: "command_failed"; problem: Problem }
   | { type: "scenes"; scenes: Scene[] }
@@ -87,6 +93,7 @@ export function initial_state(route: Route, now_ms: number): State {
     route, now_ms,
     line: { state: "connecting", retry_at_ms: 0, reason: "" },
     jobs: {}, heard_ms: {}, jobs_loaded: false, older_cursor: null,
+    batches: null, batch: null,
     scenes: {}, scenes_loaded: false,
     uploads: [],
     form: kDefaultForm, form_errors: {}, form_problem: "", submitting: false,
@@ -149,12 +156,19 @@ function chosen(state: State, scene: string): State {
 const on_page = (state: State, job: string): boolean =>
   state.route.page === "job" && state.route.id === job;
 
+/** News of another batch than the one on the page, or older news, change nothing. */
+function with_batch(state: State, batch: Batch): State {
+  const wanted = state.route.page === "batch" && state.route.id === batch.id;
+  if (!wanted || (state.batch !== null && state.batch.revision > batch.revision)) return state;
+  return { ...state, batch, command_problem: "" };
+}
+
 export function reduce(state: State, action: Action): State {
   switch (action.type) {
     case "route":
       return {
         ...state, route: action.route, missing: "", command_problem: "", exposure: 0, zoom: "fit",
-        layer: "beauty", range: null, accuracy: null,
+        layer: "beauty", range: null, accuracy: null, batch: null,
         line: { state: "connecting", retry_at_ms: 0, reason: "" },
       };
     case "tick":
@@ -165,6 +179,10 @@ export function reduce(state: State, action: Action): State {
       return with_jobs(state, action.page, action.older, action.now_ms);
     case "job":
       return with_job({ ...state, missing: "" }, action.job, action.now_ms);
+    case "batches":
+      return { ...state, batches: action.batches };
+    case "batch":
+      return with_batch(state, action.batch);
     case "missing":
       return { ...state, missing: action.reason };
     case "command_failed":

@@ -9,12 +9,14 @@ import { job } from "./sample";
 
 test.each([
   ["/", { page: "home" }], ["/jobs/", { page: "home" }], ["/jobs/j_1", { page: "job", id: "j_1" }], ["/jobs/j_1/", { page: "job", id: "j_1" }],
-  ["/jobs/%zz", { page: "home" }], ["/elsewhere", { page: "home" }],
+  ["/jobs/%zz", { page: "home" }],
+  ["/batches", { page: "batches" }], ["/batches/", { page: "batches" }], ["/batches/b_1", { page: "batch", id: "b_1" }], ["/elsewhere", { page: "home" }],
 ])("route %s", (path, route) => expect(parse_route(path)).toEqual(route));
 
 test("a route's path leads back to it", () => {
-  const route = { page: "job", id: "a b/c" } as const;
-  expect(parse_route(route_path(route))).toEqual(route);
+  for (const route of [{ page: "job", id: "a b/c" }, { page: "batch", id: "a b/c" }, { page: "batches" }] as const) {
+    expect(parse_route(route_path(route))).toEqual(route);
+  }
 });
 
 describe("problem", () => {

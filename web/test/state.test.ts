@@ -1,4 +1,5 @@
 import { describe, expect, test } from "vitest";
+import type { Batch } from "../src/contract";
 import { kDefaultForm } from "../src/form";
 import { Problem } from "../src/problem";
 import { initial_state, jobs_in_order, newer_job, reduce, since_heard, type Action, type State } from "../src/state";
@@ -119,5 +120,22 @@ describe("form", () => {
     reduce(before, { type: "scenes", scenes: [kScene] });
     expect(before).toEqual(copy);
     expect(before.form).toBe(kDefaultForm);
+  });
+});
+
+describe("batches", () => {
+  const batch = (changes: object): Batch => ({
+    id: "b_1", name: "", state: "running", revision: 3, created_at: "2026-01-01T00:00:00Z", finished_at: null, items: [],
+    counts: { waiting: 1, active: 0, completed: 0, failed: 0, cancelled: 0, skipped: 0, reused: 0, total: 1 }, ...changes,
+  });
+  const on_page: Action = { type: "route", route: { page: "batch", id: "b_1" } };
+  test("only news of the batch on the page counts, and no older one", () => {
+    const newest = batch({});
+    expect(run(on_page, { type: "batch", batch: newest }, { type: "batch", batch: batch({ revision: 2 }) },
+      { type: "batch", batch: batch({ id: "b_2", revision: 9 }) }).batch).toBe(newest);
+    expect(run({ type: "batch", batch: newest }).batch).toBeNull();
+  });
+  test("it is forgotten with its page", () => {
+    expect(run(on_page, { type: "batch", batch: batch({}) }, { type: "route", route: { page: "batches" } }).batch).toBeNull();
   });
 });

@@ -2,6 +2,7 @@
 
 #include "await.hpp"
 #include "job_feed.hpp"
+#include "json_post.hpp"
 #include "query.hpp"
 #include "raykiln/api/api.hpp"
 #include "raykiln/api/job_json.hpp"
@@ -15,28 +16,10 @@ Response job_answer(int status, const JobSnapshot& job) {
   return response;
 }
 
-std::optional<Problem> check_idempotency_key(const Request& request) {
-  const auto* key = find_value(request.headers, "idempotency-key");
-  if (key == nullptr) return std::nullopt;
-  const bool visible =
-      std::all_of(key->begin(), key->end(), [](char c) { return c > ' ' && c < 0x7F; });
-  if (!key->empty() && key->size() <= 200 && visible) return std::nullopt;
-  return invalid_parameter("Idempotency-Key", "must have 1 to 200 visible ASCII characters");
-}
-
-std::optional<Problem> check_media_type(const Request& request) {
-  const auto* type = find_value(request.headers, "content-type");
-  const std::string_view text = type == nullptr ? std::string_view{} : *type;
-  const auto media = text.substr(0, text.find(';'));
-  if (media == "application/json" || media == "application/json ") return std::nullopt;
-  return Problem{415, "unsupported_media_type", "Content-Type must be application/json", "Content-Type"};
-}
-
 /// A body of JSON for something new; its key, if it has one.
 std::optional<Problem> check_creation(const Request& request) {
   if (auto problem = check_query(request, {})) return problem;
-  if (auto problem = check_media_type(request)) return problem;
-  return check_idempotency_key(request);
+  return check_json_post(request);
 }
 
 std::string idempotency_key(const Request& request) {
@@ -55,7 +38,7 @@ Answer Api::create_job(const Request& request) {
     parts_.scheduler.submit(std::move(submission), std::move(reply));
   });
   if (!result) return to_response(problem_of(result.error()));
-  return job_answer(202, result->job);
+  return job_answer(result->reused ? 200 : 202, result->job);
 }
 
 Answer Api::extend_job(const Request& request) {

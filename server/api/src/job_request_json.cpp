@@ -205,6 +205,7 @@ std::variant<JobRequest, Problem> parse_job_request(std::string_view body, const
   return parse_object<JobRequest>(body, [&](FieldReader& reader, Errors& errors, JobRequest& request) {
     read_picture(reader, limits, errors, request);
     read_stop(reader, limits, errors, request);
+    request.reuse = reader.boolean("reuse").value_or(false);
   });
 }
 
@@ -259,7 +260,8 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"emitter_sampling", request.emitter_sampling},
           {"effects", effects_value(request.effects)},
           {"tile", request.tile},
-          {"priority", request.priority}};
+          {"priority", request.priority},
+          {"reuse", request.reuse}};
 }
 
 std::string job_request_json(const JobRequest& request) {
@@ -276,6 +278,7 @@ std::string extension_json(const Extension& extension) {
 std::string quote_request_json(const JobRequest& request, double pilot_seconds) {
   auto value = job_request_value(request);
   value.erase("stop");
+  value.erase("reuse");
   value["pilot_seconds"] = pilot_seconds;
   return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

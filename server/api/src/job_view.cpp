@@ -35,6 +35,11 @@ JobView view_of(const json& job) {
   if (effects != job.end() && effects->is_object() && effects->at("approximation").get<bool>()) {
     view.approximation = effects->at("label").get<std::string>();
   }
+  view.render_seconds = job.at("statistics").at("render_seconds").get<double>();
+  if (const json& accuracy = job.at("accuracy"); accuracy.is_object()) {
+    if (const json& error = accuracy.at("error"); error.is_object()) view.error_reached = error.at("value").get<double>();
+    view.target_reached = accuracy.at("target_reached") == true;
+  }
   view.has_image = !job.at("image").is_null();
   if (const json& prepare = job.at("prepare"); prepare.is_object()) {
     view.stage = prepare.at("stage").get<std::string>();

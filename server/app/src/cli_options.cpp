@@ -183,7 +183,14 @@ void add_batch(CLI::App& app, CliOptions& options) {
   BatchOptions& wanted = options.batch;
   auto* batch = app.add_subcommand("batch", "render and judge all pictures of a file");
   batch->add_option("FILE", wanted.file, "YAML or JSON; see proto/batch.schema.json")->required();
-  batch->add_flag("--local", wanted.local, "in this process, without a server")->required();
+  auto* local = batch->add_flag("--local", wanted.local, "in this process, without a server");
+  batch->add_flag("--wait", options.wait, "follow to the end, and judge (implied by --junit, --report, --html)");
+  batch->add_option("--timeout", wanted.timeout_seconds, "seconds to wait at most; the batch goes on")->check(CLI::Range(0.0, 1e7));
+  batch->add_flag("--cancel-on-interrupt", wanted.cancel_on_interrupt, "Ctrl-C cancels the batch instead of detaching from it");
+  batch->add_flag("--no-reuse", wanted.no_reuse, "render what the server has rendered before, too");
+  auto* resume = batch->add_option("--resume", wanted.resume, "id of this file's batch, to wait for it again")->excludes(local);
+  batch->add_flag("--rerun", wanted.rerun, "render what failed once more")->needs(resume);
+  batch->add_option("--idempotency-key", options.idempotency_key, "the same key again gives the same batch")->excludes(local);
   batch->add_option("--threads", options.threads, "with --local; 0: one a processor")->check(CLI::Range(0, 1024));
   batch->add_option("--junit", wanted.junit, "JUnit XML to write");
   batch->add_option("--report", wanted.json, "JSON to write; see proto/batch-report.schema.json");
@@ -241,6 +248,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   submit->add_flag("--wait", options.wait, "follow the job to its end (implied by -o)");
   submit->add_option("--name", options.picture.request.name, "of the job, for people");
   submit->add_option("--priority", options.picture.request.priority)->check(CLI::Range(1, 100));
+  submit->add_flag("--reuse", options.picture.request.reuse, "take the picture of an equal job that has completed, if there is one");
   submit->add_option("--idempotency-key", options.idempotency_key,
                      "the same key again gives the same job");
 

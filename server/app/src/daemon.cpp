@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "raykiln/api/api.hpp"
+#include "raykiln/api/batch_api.hpp"
 #include "raykiln/app/embedded_files.hpp"
 #include "raykiln/http/routes.hpp"
 #include "raykiln/http/server.hpp"
@@ -70,7 +71,7 @@ std::string url_of(const HttpSettings& http, std::uint16_t port) {
 /// Everything that lives as long as the daemon serves, in the order in which it depends.
 class Daemon {
  public:
-  Daemon(const DaemonOptions& options, Store& store, const StaticFiles& files, Log log)
+  Daemon(const DaemonOptions& options, Store& store, BatchRecords& records, const StaticFiles& files, Log log)
       : options_(options),
         config_(options.config),
         log_(std::move(log)),
@@ -80,7 +81,9 @@ class Daemon {
                {store, *intake_, pool_, clock_, metrics_, log_.channel("workers"), {}}),
         scheduler_(config_, {store, pool_, *intake_, cache_, clock_, metrics_, log_.channel("scheduler")}),
         api_(config_, {scheduler_, store, metrics_, log_.channel("api")}),
-        routes_(make_routes(api_, files, config_.http.max_json_bytes)),
+        batches_({scheduler_, records, clock_, log_.channel("batches")}),
+        batch_api_(config_, batches_, store),
+        routes_(make_routes(api_, batch_api_, files, config_.http.max_json_bytes)),
         server_(server_settings(options), {routes_, clock_, metrics_, log_.channel("http")}) {}
 
   int serve() {
@@ -105,6 +108,7 @@ class Daemon {
  private:
   void stop() {
     // Clients see the end of their jobs, or that the server is stopping, while jobs drain.
+    batches_.stop();
     scheduler_.shutdown(config_.drain);
     server_.stop(kHttpGrace);
   }
@@ -119,6 +123,8 @@ class Daemon {
   SceneCache cache_;
   Scheduler scheduler_;
   Api api_;
+  BatchRunner batches_;
+  BatchApi batch_api_;
   Router routes_;
   Server server_;
 };
@@ -140,7 +146,13 @@ int run_daemon(const DaemonOptions& options) {
               << store.error().message << '\n';
     return kNoStore;
   }
-  Daemon daemon(options, **store, files, log);
+  auto records = BatchRecords::open(options.config.store);
+  if (!records) {
+    std::cerr << "raykilnd: cannot use the store in " << options.config.store.directory << ": "
+              << records.error().message << '\n';
+    return kNoStore;
+  }
+  Daemon daemon(options, **store, **records, files, log);
   return daemon.serve();
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "raykiln/app/daemon.hpp"
+#include "raykiln/app/embedded_files.hpp"
 #include "raykiln/http/origin.hpp"
 
 namespace raykiln::server {
@@ -38,6 +39,7 @@ ParsedDaemon parse_daemon_options(int argc, const char* const* argv) {
   ParsedDaemon parsed;
   Config& config = parsed.options.config;
   config.version = RAYKILN_VERSION;
+  config.engine = engine_digest();
   std::string listen = "127.0.0.1:8080";
   bool allow_remote = false;
   int drain_seconds = static_cast<int>(config.drain.count());

@@ -12,6 +12,13 @@ namespace {
 
 constexpr int kMaxReconnects = 30;
 
+bool is_final_state(const std::string& state) {
+  const auto known = job_state_named(state);
+  return known && is_final(*known);
+}
+
+}  // namespace
+
 ProgressState progress_of(const JobView& job) {
   ProgressState state;
   state.stage = job.stage.empty() ? job.state : job.stage;
@@ -23,13 +30,6 @@ ProgressState progress_of(const JobView& job) {
   state.rays_per_second = job.rays_per_second;
   return state;
 }
-
-bool is_final_state(const std::string& state) {
-  const auto known = job_state_named(state);
-  return known && is_final(*known);
-}
-
-}  // namespace
 
 ExitCode exit_code_for_status(int status) {
   if (status == 404) return ExitCode::kNotFound;

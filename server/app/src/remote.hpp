@@ -9,6 +9,7 @@
 #include "raykiln/app/cli.hpp"
 #include "raykiln/app/http_client.hpp"
 #include "raykiln/app/progress.hpp"
+#include "raykiln/app/scene_package.hpp"
 
 namespace raykiln::server {
 
@@ -40,12 +41,17 @@ class Remote {
   ExitCode failure_ = ExitCode::kOk;
 };
 
+[[nodiscard]] ProgressState progress_of(const JobView& job);
 [[nodiscard]] ExitCode exit_code_for_status(int status);
 /// 0, kJobFailed or kJobCancelled.
 [[nodiscard]] ExitCode exit_code_for_state(const std::string& state);
 
 /// Makes the server have the scene; its id.
 [[nodiscard]] std::optional<std::string> upload_scene(Remote& remote, const CliOptions& options);
+
+/// Uploads the files of a scene under its id.
+[[nodiscard]] Result<ClientResponse> put_scene(const ServerAddress& server, const ScenePackage& package,
+                                               const std::string& id);
 
 /// Downloads the newest picture into each of the outputs.
 [[nodiscard]] ExitCode fetch_pictures(Remote& remote, const CliOptions& options,

@@ -33,6 +33,12 @@ int wait_for_stop_signal() {
   return number;
 }
 
+bool stop_signal_within(std::chrono::milliseconds time) {
+  const sigset_t set = stop_signals();
+  const timespec span{time.count() / 1000, time.count() % 1000 * 1'000'000};
+  return sigtimedwait(&set, nullptr, &span) > 0;
+}
+
 void exit_on_second_signal(std::stop_token stop) {
   const sigset_t set = stop_signals();
   const timespec moment{0, 50'000'000};

@@ -108,6 +108,14 @@ void say_warnings(const CliOptions& options, const std::string& json) {
 
 }  // namespace
 
+Result<ClientResponse> put_scene(const ServerAddress& server, const ScenePackage& package, const std::string& id) {
+  BodyParts body = body_of(package);
+  return HttpClient(server, kImportSilence)
+      .upload("PUT", "/v1/scenes/" + id + "?name=" + percent_encode(package.name),
+              {{"Content-Type", content_type(package.kind)}}, body.length(),
+              [&body](char* to, std::size_t room) { return body.read(to, room); });
+}
+
 std::optional<std::string> upload_scene(Remote& remote, const CliOptions& options) {
   const auto package = find_scene_files(options.scene);
   const auto wrong = [&](const Error& error) {
@@ -127,11 +135,7 @@ std::optional<std::string> upload_scene(Remote& remote, const CliOptions& option
     static_cast<void>(remote.check(std::move(known)));  // prints, and sets the failure
     return std::nullopt;
   }
-  BodyParts body = body_of(*package);
-  auto answer = HttpClient(remote.address(), kImportSilence)
-                    .upload("PUT", target + "?name=" + percent_encode(package->name),
-                            {{"Content-Type", content_type(package->kind)}}, body.length(),
-                            [&body](char* to, std::size_t room) { return body.read(to, room); });
+  auto answer = put_scene(remote.address(), *package, *id);
   if (answer && answer->status == 422) {
     remote.fail(ExitCode::kScene, problem_text(answer->body));
     return std::nullopt;

@@ -12,6 +12,9 @@ Handler file(const StaticFiles& files, std::string path) {
   };
 }
 
+/// A batch is as large as a few requests of jobs.
+constexpr std::size_t kBatchBodies = 4;
+
 /// Files beside index.html, or below its assets folder.
 Handler any_file(const StaticFiles& files) {
   return [&files](const Request& request) -> Answer {
@@ -21,7 +24,7 @@ Handler any_file(const StaticFiles& files) {
 
 }  // namespace
 
-Router make_routes(Api& api, const StaticFiles& files, std::size_t max_json_bytes) {
+Router make_routes(Api& api, BatchApi& batches, const StaticFiles& files, std::size_t max_json_bytes) {
   Router table;
   const auto to = [&api](Answer (Api::*operation)(const Request&)) -> Handler {
     return [&api, operation](const Request& request) { return (api.*operation)(request); };
@@ -48,6 +51,17 @@ Router make_routes(Api& api, const StaticFiles& files, std::size_t max_json_byte
   table.route("GET", "/v1/jobs/<job>/image", to(&Api::get_image));
   table.route("GET", "/v1/jobs/<job>/samples", to(&Api::replay_sample));
 
+  const auto of_batch = [&batches](Answer (BatchApi::*operation)(const Request&)) -> Handler {
+    return [&batches, operation](const Request& request) { return (batches.*operation)(request); };
+  };
+  table.route("POST", "/v1/batches", of_batch(&BatchApi::create_batch), kBatchBodies * max_json_bytes);
+  table.route("GET", "/v1/batches", of_batch(&BatchApi::list_batches));
+  table.route("GET", "/v1/batches/<batch>", of_batch(&BatchApi::get_batch));
+  table.route("POST", "/v1/batches/<batch>/cancel", of_batch(&BatchApi::cancel_batch));
+  table.route("POST", "/v1/batches/<batch>/rerun", of_batch(&BatchApi::rerun_batch));
+  table.route("GET", "/v1/batches/<batch>/events", of_batch(&BatchApi::watch_batch));
+  table.route("POST", "/v1/missing-scenes", of_batch(&BatchApi::missing_scenes), max_json_bytes);
+
   table.route("GET", "/livez", to(&Api::livez));
   table.route("GET", "/readyz", to(&Api::readyz));
   table.route("GET", "/metrics", to(&Api::metrics_text));
@@ -55,6 +69,8 @@ Router make_routes(Api& api, const StaticFiles& files, std::size_t max_json_byte
   table.route("GET", "/openapi.yaml", file(files, "openapi.yaml"));
   table.route("GET", "/", file(files, "index.html"));
   table.route("GET", "/jobs/<job>", file(files, "index.html"));
+  table.route("GET", "/batches", file(files, "index.html"));
+  table.route("GET", "/batches/<batch>", file(files, "index.html"));
   table.route("GET", "/<file>", any_file(files));
   table.route("GET", "/assets/<file>", any_file(files));
   return table;

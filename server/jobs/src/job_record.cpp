@@ -195,6 +195,7 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   r.integer("emitter_sampling", q.emitter_sampling ? 1 : 0);
   // Left out where it is the default: digests of requests stay those that older versions stored.
   if (q.effects != JobRequest{}.effects) r.text("effects", q.effects);
+  if (q.reuse) r.integer("reuse", 1);
 }
 
 JobRequest read_request(const RecordReader& r) {
@@ -220,6 +221,7 @@ JobRequest read_request(const RecordReader& r) {
       direction_sampling_named(r.text("direction_sampling")).value_or(q.direction_sampling);
   q.emitter_sampling = r.integer("emitter_sampling", 1) != 0;
   q.effects = r.text("effects", q.effects);
+  q.reuse = r.integer("reuse") != 0;
   return q;
 }
 

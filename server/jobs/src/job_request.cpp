@@ -180,4 +180,12 @@ std::string request_digest(const JobRequest& request) {
   return sha256_hex(record.str());
 }
 
+std::string result_digest(const JobRequest& request, std::string_view engine) {
+  JobRequest picture = request;
+  picture.name.clear();
+  picture.priority = JobRequest{}.priority;
+  picture.reuse = false;
+  return sha256_hex(request_digest(picture).append("\n").append(engine));
+}
+
 }  // namespace raykiln::server

@@ -23,7 +23,7 @@ namespace raykiln::server {
 /// A job that has not ended.
 struct LiveJob {
   JobSnapshot snapshot;
-  std::string idempotency_key, request_digest;
+  std::string idempotency_key, request_digest, result_digest;
   std::uint64_t order = 0;  ///< of submission
 
   // While active.
@@ -95,6 +95,7 @@ class Scheduler::Core {
   // core_jobs.cpp
   [[nodiscard]] Result<SubmittedJob> try_submit(SubmitJob submission);
   [[nodiscard]] Result<std::optional<SubmittedJob>> earlier_submission(const SubmitJob& submission);
+  [[nodiscard]] Result<std::optional<SubmittedJob>> equal_result(const JobRequest& request);
   [[nodiscard]] Result<JobSnapshot> snapshot_of(const JobId& id);
   [[nodiscard]] Status check_resources(const JobRequest& request);
   void enqueue(LiveJob& job);
@@ -181,6 +182,8 @@ class Scheduler::Core {
   Counter& rays_;
   Counter& non_finite_;
   Counter& tasks_;
+  Counter& samples_;
+  Counter& reused_;
   Histogram& task_seconds_;
 
   std::mutex idle_mutex_;

@@ -30,6 +30,7 @@ Result<SubmitJob> Scheduler::Core::extended(ExtendJob extension) {
   }
   SubmitJob submission{std::move(earlier->request), std::move(extension.idempotency_key), extension.job};
   submission.request.stop = stop;
+  submission.request.reuse = false;
   submission.request.priority = extension.priority.value_or(submission.request.priority);
   return submission;
 }

@@ -68,7 +68,18 @@ Result<std::optional<SubmittedJob>> Scheduler::Core::earlier_submission(const Su
   }
   auto snapshot = snapshot_of((*earlier)->id);
   if (!snapshot) return snapshot.error();
-  return std::optional(SubmittedJob{std::move(*snapshot), false});
+  return std::optional(SubmittedJob{.job = std::move(*snapshot), .created = false});
+}
+
+Result<std::optional<SubmittedJob>> Scheduler::Core::equal_result(const JobRequest& request) {
+  auto earlier = parts_.store.job_with_result(result_digest(request, config_.engine));
+  if (!earlier) return earlier.error();
+  if (!earlier->has_value()) return std::optional<SubmittedJob>();
+  auto snapshot = snapshot_of((*earlier)->id);
+  if (!snapshot) return snapshot.error();
+  if (snapshot->image_revision == 0) return std::optional<SubmittedJob>();
+  reused_.add();
+  return std::optional(SubmittedJob{.job = std::move(*snapshot), .created = false, .reused = true});
 }
 
 Status Scheduler::Core::check_resources(const JobRequest& request) {
@@ -93,6 +104,11 @@ Result<SubmittedJob> Scheduler::Core::try_submit(SubmitJob submission) {
   if (!accepting_) {
     return Error{ErrorKind::kUnavailable, "shutting_down", "the server is stopping", "", 5};
   }
+  if (request.reuse) {
+    auto there = equal_result(request);
+    if (!there) return there.error();
+    if (there->has_value()) return std::move(**there);
+  }
   auto record = parts_.store.scene(request.scene);
   if (!record) return record.error();
   const auto report = decode_report(record->report);
@@ -111,10 +127,11 @@ Result<SubmittedJob> Scheduler::Core::try_submit(SubmitJob submission) {
   job->idempotency_key = submission.idempotency_key;
   job->request_digest = digest_of(submission);
   job->snapshot.continues = submission.continues;
+  job->result_digest = result_digest(request, config_.engine);
   if (auto stored = parts_.store.put_job({job->snapshot.id, JobState::kQueued, 1, request.scene,
                                           job->snapshot.created, job->snapshot.created,
                                           job->idempotency_key, job->request_digest,
-                                          encode_job(job->snapshot)});
+                                          encode_job(job->snapshot), job->result_digest});
       !stored) {
     return stored.error();
   }
@@ -122,7 +139,7 @@ Result<SubmittedJob> Scheduler::Core::try_submit(SubmitJob submission) {
   enqueue(added);
   refresh(added);
   parts_.log.info("job_queued", {{"job", added.snapshot.id}, {"scene", request.scene}});
-  return SubmittedJob{added.snapshot, true};
+  return SubmittedJob{.job = added.snapshot, .created = true};
 }
 
 void Scheduler::Core::enqueue(LiveJob& job) {

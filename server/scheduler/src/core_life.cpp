@@ -16,6 +16,8 @@ Scheduler::Core::Core(const Config& config, const Parts& parts)
       rays_(parts.metrics.counter("raykiln_rays_total", "rays that were traced")),
       non_finite_(parts.metrics.counter("raykiln_non_finite_samples_total", "samples dropped")),
       tasks_(parts.metrics.counter("raykiln_tasks_total", "tasks merged into films")),
+      samples_(parts.metrics.counter("raykiln_samples_total", "samples of pixels that were rendered")),
+      reused_(parts.metrics.counter("raykiln_results_reused_total", "jobs answered with a picture that was there")),
       task_seconds_(parts.metrics.histogram("raykiln_task_seconds", "time of one task on a worker",
                                             {0.001, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0})),
       strand_(std::make_shared<SerialThread>("scheduler")),
@@ -56,6 +58,8 @@ void Scheduler::Core::restore() {
     fresh->snapshot = std::move(*decoded);
     fresh->idempotency_key = record->idempotency_key;
     fresh->request_digest = record->request_digest;
+    // It runs again from its start: what it makes is this engine's.
+    fresh->result_digest = result_digest(fresh->snapshot.request, config_.engine);
     LiveJob& job = *fresh;
     live_[record->id] = std::move(fresh);
     const bool runs_again = job.snapshot.state != JobState::kCancelling;

@@ -50,7 +50,7 @@ void Scheduler::Core::save(const LiveJob& job) {
   const auto stored =
       parts_.store.put_job({s.id, s.state, s.revision, s.request.scene, s.created,
                             parts_.clock.wall(), job.idempotency_key, job.request_digest,
-                            encode_job(s)});
+                            encode_job(s), job.result_digest});
   // The job goes on: a restart would find the state before and run it again, which is harmless.
   if (!stored) {
     parts_.log.error("job_not_stored", {{"job", s.id}, {"why", stored.error().message}});

@@ -242,6 +242,7 @@ void Scheduler::Core::merge_outcome(LiveJob& job, const TileOutcome& outcome) {
     job.film->resolve(result.rect, job.picture);
     add_counts(statistics, result);
     rays_.add(static_cast<double>(rays_in(result)));
+    samples_.add(static_cast<double>(result.stats.paths));
     non_finite_.add(static_cast<double>(result.stats.non_finite));
   }
   (void)job.plan->merged(outcome.item, outcome.seconds);

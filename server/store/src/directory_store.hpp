@@ -49,6 +49,7 @@ class DirectoryStore final : public Store {
   Status put_job(const JobRecord& job) override;
   Result<JobRecord> job(const std::string& id) override;
   Result<std::optional<JobRecord>> job_with_key(const std::string& idempotency_key) override;
+  Result<std::optional<JobRecord>> job_with_result(const std::string& result_digest) override;
   Result<std::vector<JobRecord>> jobs(const JobQuery& query) override;
   Status prune_jobs(std::size_t keep) override;
   Status put_image(const std::string& job, const StoredImage& image) override;

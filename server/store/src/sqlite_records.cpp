@@ -48,7 +48,7 @@ std::vector<SceneFileEntry> decode_files(const std::string& text) {
 
 constexpr const char* kSceneColumns = "SELECT id, kind, name, bytes, created, report, files FROM scenes ";
 constexpr const char* kJobColumns =
-    "SELECT id, state, revision, scene, created, updated, key, digest, content, sequence FROM jobs ";
+    "SELECT id, state, revision, scene, created, updated, key, digest, content, sequence, result FROM jobs ";
 constexpr const char* kFinal = "state IN ('completed', 'failed', 'cancelled')";
 
 SceneRecord scene_of(SQLite::Statement& row) {
@@ -75,6 +75,7 @@ JobRecord job_of(SQLite::Statement& row) {
   job.request_digest = row.getColumn(7).getString();
   job.content = row.getColumn(8).getString();
   job.sequence = static_cast<std::uint64_t>(row.getColumn(9).getInt64());
+  job.result_digest = row.getColumn(10).getString();
   return job;
 }
 
@@ -93,9 +94,14 @@ void create_tables(SQLite::Database& db) {
       "CREATE TABLE IF NOT EXISTS jobs (sequence INTEGER PRIMARY KEY AUTOINCREMENT,"
       " id TEXT NOT NULL UNIQUE, state TEXT NOT NULL, revision INTEGER NOT NULL, scene TEXT NOT NULL,"
       " created INTEGER NOT NULL, updated INTEGER NOT NULL, key TEXT UNIQUE, digest TEXT NOT NULL,"
-      " content TEXT NOT NULL)");
+      " content TEXT NOT NULL, result TEXT NOT NULL DEFAULT '')");
   db.exec("CREATE INDEX IF NOT EXISTS jobs_by_state ON jobs (state, sequence)");
   db.exec("CREATE INDEX IF NOT EXISTS jobs_by_scene ON jobs (scene, sequence)");
+  db.exec("CREATE INDEX IF NOT EXISTS jobs_by_result ON jobs (result, sequence)");
+}
+
+void upgrade_tables(SQLite::Database& db, int version) {
+  if (version < 2) db.exec("ALTER TABLE jobs ADD COLUMN result TEXT NOT NULL DEFAULT ''");
 }
 
 void insert_scene(SQLite::Database& db, const SceneRecord& scene) {
@@ -138,9 +144,10 @@ int erase_scene(SQLite::Database& db, const std::string& id) {
 void upsert_job(SQLite::Database& db, const JobRecord& job) {
   SQLite::Statement query(
       db,
-      "INSERT INTO jobs (id, state, revision, scene, created, updated, key, digest, content)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET state = excluded.state,"
-      " revision = excluded.revision, updated = excluded.updated, content = excluded.content");
+      "INSERT INTO jobs (id, state, revision, scene, created, updated, key, digest, content, result)"
+      " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET state = excluded.state,"
+      " revision = excluded.revision, updated = excluded.updated, content = excluded.content,"
+      " result = excluded.result");
   query.bind(1, job.id);
   query.bind(2, std::string(name(job.state)));
   query.bind(3, bounded(job.revision));
@@ -154,6 +161,7 @@ void upsert_job(SQLite::Database& db, const JobRecord& job) {
   }
   query.bind(8, job.request_digest);
   query.bind(9, job.content);
+  query.bind(10, job.result_digest);
   query.exec();
 }
 
@@ -166,6 +174,13 @@ std::optional<JobRecord> find_job(SQLite::Database& db, const std::string& id) {
 std::optional<JobRecord> find_job_with_key(SQLite::Database& db, const std::string& key) {
   SQLite::Statement query(db, std::string(kJobColumns) + "WHERE key = ?");
   query.bind(1, key);
+  return one_job(query);
+}
+
+std::optional<JobRecord> find_job_with_result(SQLite::Database& db, const std::string& digest) {
+  SQLite::Statement query(db, std::string(kJobColumns) +
+                                  "WHERE result = ? AND state = 'completed' ORDER BY sequence DESC LIMIT 1");
+  query.bind(1, digest);
   return one_job(query);
 }
 

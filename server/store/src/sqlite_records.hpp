@@ -12,7 +12,9 @@
 namespace raykiln::server {
 
 void create_tables(SQLite::Database& db);
-inline constexpr int kSchemaVersion = 1;
+/// Of a store that an older program wrote; then create_tables() adds what is missing.
+void upgrade_tables(SQLite::Database& db, int version);
+inline constexpr int kSchemaVersion = 2;
 
 void insert_scene(SQLite::Database& db, const SceneRecord& scene);
 [[nodiscard]] std::optional<SceneRecord> find_scene(SQLite::Database& db, const std::string& id);
@@ -25,6 +27,8 @@ void upsert_job(SQLite::Database& db, const JobRecord& job);
 [[nodiscard]] std::optional<JobRecord> find_job(SQLite::Database& db, const std::string& id);
 [[nodiscard]] std::optional<JobRecord> find_job_with_key(SQLite::Database& db,
                                                          const std::string& key);
+[[nodiscard]] std::optional<JobRecord> find_job_with_result(SQLite::Database& db,
+                                                            const std::string& digest);
 [[nodiscard]] std::vector<JobRecord> list_jobs(SQLite::Database& db, const JobQuery& query);
 /// Removes the oldest finished jobs beyond `keep`; returns their ids.
 std::vector<std::string> erase_old_jobs(SQLite::Database& db, std::size_t keep);

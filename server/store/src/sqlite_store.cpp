@@ -33,6 +33,7 @@ void check_schema(SQLite::Database& db) {
   if (version > kSchemaVersion) {
     throw std::runtime_error("the store was written by a newer version of this program");
   }
+  if (version > 0) upgrade_tables(db, version);
   create_tables(db);
   db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
@@ -171,6 +172,14 @@ Result<std::optional<JobRecord>> DirectoryStore::job_with_key(const std::string&
   return guarded([&]() -> Result<std::optional<JobRecord>> {
     if (idempotency_key.empty()) return std::optional<JobRecord>();
     return find_job_with_key(db_, idempotency_key);
+  });
+}
+
+Result<std::optional<JobRecord>> DirectoryStore::job_with_result(const std::string& result_digest) {
+  const std::scoped_lock lock(mutex_);
+  return guarded([&]() -> Result<std::optional<JobRecord>> {
+    if (result_digest.empty()) return std::optional<JobRecord>();
+    return find_job_with_result(db_, result_digest);
   });
 }
 

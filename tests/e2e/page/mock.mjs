@@ -32,6 +32,7 @@ export class Mock {
     this.seconds = seconds;
     this.scenes = new Map();
     this.jobs = new Map();
+    this.batches = new Map();
     this.keys = new Map();
     this.watchers = new Map();
     this.frames = new Map();
@@ -90,6 +91,7 @@ export class Mock {
       const from = Number(url.searchParams.get("cursor") ?? 0);
       return this.json(answer, 200, { jobs: all.slice(from, from + 50), next_cursor: all.length > from + 50 ? String(from + 50) : null });
     }
+    if (parts[1] === "batches") return this.batch(method, parts.slice(2), request, answer);
     const job = this.jobs.get(parts[2]);
     if (!job) return this.problem(answer, 404, "job_not_found", "no such job");
     if (parts.length === 3) return this.json(answer, 200, job);
@@ -100,7 +102,7 @@ export class Mock {
   }
 
   page(path, answer) {
-    const name = path === "/" || path.startsWith("/jobs/") ? "index.html" : normalize(path).slice(1);
+    const name = path === "/" || path.startsWith("/jobs/") || path.startsWith("/batches") ? "index.html" : normalize(path).slice(1);
     const file = join(this.dist, name);
     if (!kTypes[extname(name)] || !existsSync(file)) return this.problem(answer, 404, "not_found", "no such file");
     answer.writeHead(200, { "Content-Type": kTypes[extname(name)],
@@ -163,6 +165,34 @@ export class Mock {
     };
     this.jobs.set(job.id, job);
     return job;
+  }
+
+  /** No more than one picture a scene; items of unknown scenes fail. */
+  async batch(method, [id, what], request, answer) {
+    if (method === "POST" && !id) {
+      const body = JSON.parse((await this.body(request)).toString());
+      const items = body.scenes.map(({ scene, name }) => this.scenes.has(scene)
+        ? { name, scene, job: this.add_job({ scene, name, ...body.defaults }).id, error: null }
+        : { name, scene, job: null, error: { title: "Not found", status: 404, code: "scene_not_found", detail: "there is no such scene" } });
+      const made = { id: `b_${randomBytes(8).toString("hex")}`, name: body.name ?? "", created_at: now(), items };
+      this.batches.set(made.id, made);
+      return this.json(answer, 202, this.batch_view(made));
+    }
+    if (!id) return this.json(answer, 200, { batches: [...this.batches.values()].reverse().map((b) => this.batch_view(b)), next_cursor: null });
+    const batch = this.batches.get(id);
+    if (!batch) return this.problem(answer, 404, "batch_not_found", "there is no such batch");
+    return this.json(answer, what ? 202 : 200, this.batch_view(batch));
+  }
+
+  batch_view(batch) {
+    const items = batch.items.map((item) => {
+      const job = item.job && this.jobs.get(item.job);
+      return { ...item, reused: false, attempt: 1, state: item.error ? "failed" : is_final(job) ? job.state : "active" };
+    });
+    const of = (state) => items.filter((item) => item.state === state).length;
+    const counts = { waiting: 0, active: of("active"), completed: of("completed"), failed: of("failed"), cancelled: of("cancelled"), skipped: 0, reused: 0, total: items.length };
+    const state = counts.active ? "running" : counts.failed ? "failed" : counts.cancelled ? "cancelled" : "completed";
+    return { ...batch, items, counts, state, revision: Date.now(), finished_at: counts.active ? null : now() };
   }
 
   change(job, changes) {

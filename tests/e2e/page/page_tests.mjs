@@ -311,4 +311,37 @@ export const kPageTests = [
     assert.deepEqual(addresses.filter((address) => !address.startsWith(url) && !address.startsWith("blob:")), []);
     await tab.close();
   }],
+
+  ["a batch is found, read and followed to its jobs by keyboard", with_tab(async (page, url) => {
+    const done = await (await fetch(`${url}/v1/jobs/${await done_job(url)}`)).json();
+    const { samples, ...size } = kSmall;
+    const answer = await fetch(`${url}/v1/batches`, {
+      method: "POST", headers: { "Content-Type": "application/json" },
+      body: JSON.stringify({
+        name: "two pictures", defaults: { ...size, stop: { samples } },
+        scenes: [{ scene: done.scene, name: "there" }, { scene: "f".repeat(64), name: "gone" }],
+      }),
+    });
+    const { id } = await answer.json();
+    await page.keyboard.press("b");
+    await until(() => page.evaluate(() => document.activeElement?.textContent), (text) => text === "Batches", "no focus on the list");
+    const link = page.locator(".page-batch:visible a", { hasText: "two pictures" });
+    await link.first().focus();
+    await page.keyboard.press("Enter");
+    await until(() => page.title(), (title) => /^failed · two pictures/.test(title), "the batch does not end");
+    assert.equal(new URL(page.url()).pathname, `/batches/${id}`);
+    const text = await page.locator(".page-batch:visible").innerText();
+    assert.match(text, /1 of 2 done, 1 failed/);
+    assert.match(text, /there is no such scene/);
+    assert.ok(await page.getByRole("button", { name: "Run again what failed" }).isVisible());
+    assert.ok(!(await page.getByRole("button", { name: "Cancel the batch" }).isVisible()));
+    assert.deepEqual(await label_faults(page), []);
+    await page.getByRole("link", { name: "there", exact: true }).focus();
+    await page.keyboard.press("Enter");
+    await until(() => page.title(), (title) => /^completed · there/.test(title), "no job behind the link");
+  })],
+
+  ["a batch that is not there", with_tab(async (page) => {
+    await page.getByRole("heading", { name: "No such batch" }).waitFor();
+  }, "/batches/b_none")],
 ];

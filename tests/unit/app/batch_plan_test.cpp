@@ -68,7 +68,7 @@ TEST(BatchPlan, WhatIsWrongIsNamedWithItsLine) {
       {"scenes: [{scene: a.obj, settings: [{widht: 3}]}]", "/widht"},
       {"scenes: [{scene: a.obj, settings: [{width: 0}]}]", "/width"},
       {"scenes: [{scene: a.obj, settings: [{scene: b}]}]", "no setting of a picture"},
-      {"max_active: 4\nscenes: [{scene: a.obj}]", "max_active"},
+      {"max_active: 0\nscenes: [{scene: a.obj}]", "max_active"},
       {"fail_fast: maybe\nscenes: [{scene: a.obj}]", "fail_fast"},
       {"[1, 2]", "map of fields"},
       {"a: 1\na: 2", "twice"},

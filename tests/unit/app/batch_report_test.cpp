@@ -54,6 +54,29 @@ TEST(BatchReport, AMissingReferenceIsNoSuccess) {
   EXPECT_EQ(count(batch_json(result), "\"verdict\":\"no_reference\""), 1U);
 }
 
+TEST(BatchReport, AWaitThatEndedComesBeforeAll) {
+  const BatchPlan plan = plan_of(2);
+  BatchResult result = result_of(plan);
+  result.pictures[0].state = PictureState::kFailed;
+  result.wait_ended = true;
+  EXPECT_EQ(outcome(result), ExitCode::kWaitEnded);
+  EXPECT_NE(junit_xml(result).find("it had not ended when the wait did"), std::string::npos);
+}
+
+TEST(BatchReport, SaysWhatWasReusedAndLinksToTheJob) {
+  const BatchPlan plan = plan_of(1);
+  BatchResult result = result_of(plan);
+  result.server = "http://127.0.0.1:8080";
+  result.pictures[0].state = PictureState::kCompleted;
+  result.pictures[0].job = "j_1";
+  result.pictures[0].reused = true;
+  EXPECT_EQ(summary(result), "1 pictures: 1 completed (1 reused)");
+  const std::string html = batch_html(result, "nowhere");
+  EXPECT_NE(html.find("completed, reused"), std::string::npos);
+  EXPECT_NE(html.find("href=\"http://127.0.0.1:8080/jobs/j_1\""), std::string::npos);
+  EXPECT_NE(junit_xml(result).find("result reused"), std::string::npos);
+}
+
 TEST(BatchReport, JunitCountsAndEscapes) {
   const BatchPlan plan = plan_of(3);
   BatchResult result = result_of(plan);

@@ -37,6 +37,17 @@ TEST(DaemonOptions, RefusesNonsense) {
   EXPECT_EQ(daemon({"--cache-bytes", "512MB"}).options.config.workers.scene_cache_bytes, 512U << 20U);
 }
 
+TEST(CliOptions, ABatchIsLocalOrWaitedForAgain) {
+  EXPECT_EQ(cli({"batch", "a.yaml"}).exit_code, -1);
+  EXPECT_EQ(cli({"batch", "a.yaml", "--local", "--resume", "b_1"}).exit_code, 2);
+  EXPECT_EQ(cli({"batch", "a.yaml", "--rerun"}).exit_code, 2) << "of which batch?";
+  const auto again = cli({"batch", "a.yaml", "--resume", "b_1", "--rerun", "--timeout", "2.5", "--cancel-on-interrupt"});
+  EXPECT_EQ(again.exit_code, -1);
+  EXPECT_EQ(again.options.batch.resume, "b_1");
+  EXPECT_EQ(again.options.batch.timeout_seconds, 2.5);
+  EXPECT_TRUE(again.options.batch.cancel_on_interrupt);
+}
+
 TEST(CliOptions, ReadsStops) {
   const auto stop_of = [](std::vector<const char*> more) {
     std::vector<const char*> all{"render", "a.obj", "-o", "a.png"};

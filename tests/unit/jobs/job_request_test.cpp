@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "raykiln/jobs/admission.hpp"
 #include "raykiln/jobs/job_snapshot.hpp"
@@ -65,6 +66,33 @@ TEST(JobRecord, OfAnOlderVersionHasTheDefaultEffects) {
   EXPECT_TRUE(decode_job(text)->effects.lines.empty());
 }
 
+TEST(JobRequest, ResultDigestLeavesOutWhatChangesNoPicture) {
+  const std::string digest = result_digest(good(), "engine");
+  JobRequest same = good();
+  same.name = "another";
+  same.priority = 99;
+  same.reuse = true;
+  EXPECT_EQ(result_digest(same, "engine"), digest);
+  EXPECT_NE(result_digest(good(), "another engine"), digest);
+  const std::function<void(JobRequest&)> changes[] = {
+      [](JobRequest& r) { r.scene.front() = r.scene.front() == '0' ? '1' : '0'; },
+      [](JobRequest& r) { r.camera = 1; },
+      [](JobRequest& r) { ++r.width; },
+      [](JobRequest& r) { ++r.stop.samples; },
+      [](JobRequest& r) { r.stop.seconds = 1.0; },
+      [](JobRequest& r) { r.stop.error = 0.5; },
+      [](JobRequest& r) { r.light_model = LightModel::kSeed; },
+      [](JobRequest& r) { r.light_model_overrides.roulette = false; },
+      [](JobRequest& r) { r.max_depth = 1; },
+      [](JobRequest& r) { ++r.seed; },
+      [](JobRequest& r) { r.emitter_sampling = !r.emitter_sampling; }};
+  for (const auto& change : changes) {
+    JobRequest other = good();
+    change(other);
+    EXPECT_NE(result_digest(other, "engine"), digest) << &change - changes;
+  }
+}
+
 TEST(JobRecord, ReadsBack) {
   JobSnapshot job;
   job.id = "j_1";
@@ -72,6 +100,7 @@ TEST(JobRecord, ReadsBack) {
   job.request.name = "two words\\";
   job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3};
   job.request.seed = (1ULL << 53) - 1;
+  job.request.reuse = true;
   job.state = JobState::kFailed;
   job.revision = 12;
   job.image_revision = 12;
@@ -100,6 +129,7 @@ TEST(JobRecord, ReadsBack) {
   EXPECT_TRUE(back->effects.lines.at(0).called_for && !back->effects.lines.at(0).simulated);
   EXPECT_TRUE(is_approximation(back->effects));
   EXPECT_EQ(back->effects.lines.at(1).left_out, "mirror lobes");
+  EXPECT_TRUE(back->request.reuse);
   EXPECT_EQ(back->error->message, "why");
   EXPECT_EQ(back->statistics.bad_samples.at(1).sample, 6U);
   EXPECT_EQ(back->statistics.roulette_ends, 5U);

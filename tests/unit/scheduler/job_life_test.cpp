@@ -53,6 +53,24 @@ TEST_F(Life, AnIdempotencyKeyMakesOneJob) {
   EXPECT_FALSE(rig.submit(small_job(scene), "key")->created) << "kept as long as the job";
 }
 
+TEST_F(Life, AnEqualResultIsReusedWhereThatIsAskedFor) {
+  JobRequest request = small_job(scene);
+  request.reuse = true;
+  const auto first = rig.submit(request);
+  EXPECT_FALSE(first->reused);
+  rig.wait_final(first->job.id);
+  request.name = "another name";
+  const auto again = rig.submit(request);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->reused);
+  EXPECT_EQ(again->job.state, JobState::kCompleted);
+  EXPECT_TRUE(rig.image(again->job.id));
+  request.seed = 7;
+  EXPECT_FALSE(rig.submit(request)->reused);
+  request = small_job(scene);
+  EXPECT_FALSE(rig.submit(request)->reused) << "nobody asked for it";
+}
+
 TEST_F(Life, RefusesWhatCannotBe) {
   auto bad = small_job(scene);
   bad.camera = std::string("none");

@@ -39,6 +39,30 @@ TEST(Restart, UnfinishedJobsRunAgainAndFinishedOnesStay) {
   EXPECT_EQ(rig.wait_final(running).state, JobState::kCancelled);
 }
 
+TEST(Restart, ResultsAreReusedByTheSameEngineAlone) {
+  const TempDirectory directory;
+  Config config;
+  config.engine = "one";
+  JobRequest request;
+  std::string first;
+  {
+    ServerRig rig(directory.path(), 2, {}, config);
+    request = small_job(rig.add_scene("a room")->scene.record.id);
+    request.reuse = true;
+    first = rig.submit(request)->job.id;
+    rig.wait_final(first);
+  }
+  {
+    ServerRig rig(directory.path(), 2, {}, config);
+    EXPECT_EQ(rig.submit(request)->job.id, first);
+  }
+  config.engine = "two";
+  ServerRig rig(directory.path(), 2, {}, config);
+  const auto again = rig.submit(request);
+  EXPECT_FALSE(again->reused);
+  EXPECT_NE(again->job.id, first);
+}
+
 TEST(Restart, ShutdownLetsWorkDrain) {
   const TempDirectory directory;
   std::string id;

@@ -193,6 +193,27 @@ TEST_P(StoreConformance, JobsKeepTheirOrderAndTheirKeys) {
   EXPECT_EQ(ids(store->jobs(query)), (Ids{"b"}));
 }
 
+TEST_P(StoreConformance, TheNewestCompletedJobIsFoundByItsResult) {
+  const auto put = [this](const char* id, JobState state, const char* result) {
+    JobRecord record = job(id, state);
+    record.result_digest = result;
+    ASSERT_TRUE(store->put_job(record));
+  };
+  put("a", JobState::kCompleted, "r");
+  put("b", JobState::kCompleted, "r");
+  put("c", JobState::kFailed, "r");
+  put("d", JobState::kRendering, "q");
+  put("e", JobState::kCompleted, "");
+  EXPECT_EQ((*store->job_with_result("r"))->id, "b");
+  EXPECT_EQ((*store->job_with_result("r"))->result_digest, "r");
+  EXPECT_FALSE(store->job_with_result("q")->has_value());
+  EXPECT_FALSE(store->job_with_result("")->has_value());
+  put("d", JobState::kCompleted, "r");
+  EXPECT_EQ((*store->job_with_result("r"))->id, "d") << "what it is of may be learned anew";
+  ASSERT_TRUE(store->prune_jobs(0));
+  EXPECT_FALSE(store->job_with_result("r")->has_value());
+}
+
 TEST_P(StoreConformance, PicturesAreReplacedAndGoWithTheirJobs) {
   for (const char* id : {"a", "b", "c"}) ASSERT_TRUE(store->put_job(job(id, JobState::kCompleted)));
   ASSERT_TRUE(store->put_job(job("d", JobState::kRendering)));

@@ -13,6 +13,7 @@ export interface Commands {
   submit(): void;
   show_older(): void;
   cancel(id: string): void;
+  command_batch(id: string, what: "cancel" | "rerun"): void;
   render_again(id: string): void;
   /** Goes on with a completed job until its error is so small. */
   extend(id: string, error: number): void;

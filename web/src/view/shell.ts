@@ -3,6 +3,9 @@
 
 import { files_of_drop } from "../dropped";
 import type { State } from "../state";
+import { batch_title } from "../contract";
+import { BatchList } from "./batch_list";
+import { BatchPage } from "./batch_page";
 import type { Commands } from "./commands";
 import { h, set_attribute, set_hidden, set_text } from "./dom";
 import { Help } from "./help";
@@ -17,6 +20,8 @@ export class Shell {
   readonly job: JobPage;
   readonly help = new Help();
   private list_: JobList;
+  private batches_ = new BatchList();
+  private batch_: BatchPage;
   private home_: HTMLElement;
   private home_title_ = h("h1", { class: "unseen", tabindex: -1 }, "raykiln: renders and jobs");
   private banner_text_ = h("span");
@@ -31,6 +36,7 @@ export class Shell {
     this.form = new JobForm(commands);
     this.list_ = new JobList(commands);
     this.job = new JobPage(commands);
+    this.batch_ = new BatchPage(commands);
     this.home_ = h("main", { class: "page-home", id: "home" }, this.home_title_,
       h("div", { class: "column" }, this.uploads.element,
         h("section", { "aria-labelledby": "form-heading" },
@@ -45,8 +51,8 @@ export class Shell {
       h("a", { class: "skip", href: "#home" }, "Skip to the content"),
       h("header", { class: "bar" },
         h("a", { class: "brand", href: "/" }, h("span", { class: "ember", "aria-hidden": "true" }), "raykiln"),
-        h("nav", { "aria-label": "Main" }, h("a", { href: "/" }, "Jobs"), h("a", { href: "/openapi.yaml" }, "API")), this.line_, question),
-      this.banner_, this.home_, this.job.element, this.voice_, this.veil_, this.help.element);
+        h("nav", { "aria-label": "Main" }, h("a", { href: "/" }, "Jobs"), h("a", { href: "/batches" }, "Batches"), h("a", { href: "/openapi.yaml" }, "API")), this.line_, question),
+      this.banner_, this.home_, this.job.element, this.batches_.element, this.batch_.element, this.voice_, this.veil_, this.help.element);
     this.listen(root, commands);
   }
 
@@ -79,7 +85,7 @@ export class Shell {
       const plain = event.button === 0 && !event.metaKey && !event.ctrlKey && !event.shiftKey;
       if (!link || !plain || link.hasAttribute("download") || link.origin !== location.origin) return;
       const skip = link.classList.contains("skip");
-      if (!skip && link.pathname !== "/" && !link.pathname.startsWith("/jobs/")) return;
+      if (!skip && !/^\/($|jobs\/|batches($|\/))/.test(link.pathname)) return;
       event.preventDefault();
       if (skip) this.focus_page();
       else commands.navigate(link.pathname);
@@ -88,8 +94,9 @@ export class Shell {
 
   /** Moves the focus to the page's heading, after a change of place. */
   focus_page(): void {
-    if (this.home_.hidden) this.job.focus();
-    else this.home_title_.focus();
+    const places = [this.home_, this.job.element, this.batches_.element, this.batch_.element];
+    const titles = [this.home_title_, this.job, this.batches_, this.batch_];
+    titles[places.findIndex((place) => !place.hidden)]?.focus();
   }
 
   say(text: string): void {
@@ -97,9 +104,11 @@ export class Shell {
   }
 
   update(state: State): void {
-    const on_job = state.route.page === "job";
-    set_hidden(this.home_, on_job);
-    set_hidden(this.job.element, !on_job);
+    const { route } = state;
+    set_hidden(this.home_, route.page !== "home");
+    set_hidden(this.job.element, route.page !== "job");
+    set_hidden(this.batches_.element, route.page !== "batches");
+    set_hidden(this.batch_.element, route.page !== "batch");
     const lost = state.line.state === "lost";
     set_hidden(this.banner_, !lost);
     if (lost) {
@@ -110,8 +119,12 @@ export class Shell {
     }
     set_attribute(this.line_, "data-line", state.line.state);
     set_text(this.line_, { connecting: "connecting", live: "live", lost: "offline", ended: "" }[state.line.state]);
-    if (state.route.page === "job") {
-      this.job.update(state, state.route.id);
+    if (route.page === "job") {
+      this.job.update(state, route.id);
+    } else if (route.page === "batches") {
+      this.batches_.update(state);
+    } else if (route.page === "batch") {
+      this.batch_.update(state, route.id);
     } else {
       this.uploads.update(state.uploads);
       this.form.update(state);
@@ -122,6 +135,10 @@ export class Shell {
 }
 
 function title(state: State): string {
+  if (state.route.page === "batches") return "Batches · raykiln";
+  if (state.route.page === "batch") {
+    return state.batch ? `${state.batch.state} · ${batch_title(state.batch)} · raykiln` : "raykiln";
+  }
   if (state.route.page !== "job") return "raykiln";
   const job = state.jobs[state.route.id];
   if (!job) return "raykiln";

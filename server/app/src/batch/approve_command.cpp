@@ -11,6 +11,8 @@ namespace raykiln::server {
 namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 30U;
+/// A report has a few kilobytes and a hundred values a picture.
+constexpr DocumentBounds kReportBounds{std::size_t{64} << 20U, 2'000'000};
 
 std::string text_of(const Value& map, const char* key) {
   const Value* value = map.find(key);
@@ -47,8 +49,8 @@ bool is_safe(const std::string& name, const std::filesystem::path& reference) {
 ExitCode approve_command(const CliOptions& options) {
   const auto& wanted = options.approve;
   const auto file = wanted.report / "results.json";
-  const auto bytes = read_whole_file(file, std::uint64_t{1} << 20U);
-  const auto results = bytes ? parse_yaml({reinterpret_cast<const char*>(bytes->data()), bytes->size()})
+  const auto bytes = read_whole_file(file, kReportBounds.bytes);
+  const auto results = bytes ? parse_yaml({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, kReportBounds)
                              : Result<Value>(bytes.error());
   const Value* pictures = results ? results->find("pictures") : nullptr;
   if (pictures == nullptr) {

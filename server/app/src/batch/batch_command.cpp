@@ -66,8 +66,9 @@ ExitCode batch_command(const CliOptions& options) {
   BatchResult result{.plan = *plan, .pictures = std::vector<PictureResult>(plan->pictures.size()), .batch = {}, .server = {}};
   const auto begun = std::chrono::steady_clock::now();
   const BatchRun run{.options = options, .folder = folder, .threads = options.threads, .quiet = options.quiet};
-  const ExitCode ran = run_batch_here(run, result);
-  if (ran != ExitCode::kOk) return ran;
+  bool waited = true;
+  const ExitCode ran = wanted.local ? run_batch_here(run, result) : run_batch_on_server(run, result, waited);
+  if (ran != ExitCode::kOk || !waited) return ran;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   if (!write_reports(options, result, folder)) return ExitCode::kFailure;
   if (!options.quiet) std::cerr << summary(result) << '\n';

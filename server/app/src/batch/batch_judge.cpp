@@ -41,8 +41,12 @@ void fail(PictureResult& result, const PlannedPicture& planned, const std::strin
 
 }  // namespace
 
-Status judge_picture(const BatchPlan& plan, const PlannedPicture& planned, const Bytes& exr,
-                     const std::filesystem::path& folder, PictureResult& result) {
+std::string failure_text(const Error& error) {
+  return error.code + ": " + error.message + (error.where.empty() ? "" : " (" + error.where + ")");
+}
+
+Status judge_render(const BatchPlan& plan, const PlannedPicture& planned, const Bytes& exr,
+                    const std::filesystem::path& folder, PictureResult& result) {
   std::error_code error;
   std::filesystem::create_directories(folder / "pictures", error);
   if (error) return Error{ErrorKind::kInternal, "internal", error.message(), folder.string()};

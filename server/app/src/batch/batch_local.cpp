@@ -1,6 +1,8 @@
 // A batch in this process: one picture after another, each on all processors.
-#include <iostream>
 #include <unistd.h>
+
+#include <iostream>
+#include <new>
 
 #include "batch_judge.hpp"
 #include "batch_progress.hpp"
@@ -13,12 +15,7 @@
 namespace raykiln::server {
 namespace {
 
-std::string failure_text(const Error& error) {
-  return error.code + ": " + error.message + (error.where.empty() ? "" : " (" + error.where + ")");
-}
-
-/// The EXR of a picture, or why there is none.
-Result<std::vector<std::uint8_t>> render_one(const PlannedPicture& planned, LocalPool& pool, PictureResult& result,
+Result<std::vector<std::uint8_t>> try_render(const PlannedPicture& planned, LocalPool& pool, PictureResult& result,
                                              const std::function<void(const ProgressState&)>& progress) {
   const auto package = find_scene_files(planned.scene);
   if (!package) return package.error();
@@ -35,6 +32,16 @@ Result<std::vector<std::uint8_t>> render_one(const PlannedPicture& planned, Loca
   if (accuracy && accuracy->known()) result.error_reached = accuracy->error.value;
   result.limit_reached = request.stop.error && !(accuracy && target_met(request.stop, *accuracy));
   return local_exr(*picture, *scene);
+}
+
+/// The EXR of a picture, or why there is none. One that is too large fails alone.
+Result<std::vector<std::uint8_t>> render_one(const PlannedPicture& planned, LocalPool& pool, PictureResult& result,
+                                             const std::function<void(const ProgressState&)>& progress) {
+  try {
+    return try_render(planned, pool, result, progress);
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorKind::kInternal, "internal", "out of memory", planned.name};
+  }
 }
 
 }  // namespace
@@ -59,7 +66,7 @@ ExitCode run_batch_here(const BatchRun& run, BatchResult& result) {
     own.state = exr ? PictureState::kCompleted : PictureState::kFailed;
     if (!exr) {
       own.failure = failure_text(exr.error());
-    } else if (const auto judged = judge_picture(result.plan, planned, *exr, run.folder, own); !judged) {
+    } else if (const auto judged = judge_render(result.plan, planned, *exr, run.folder, own); !judged) {
       progress.finish();
       std::cerr << "raykiln: " << judged.error().message << '\n';
       return ExitCode::kFailure;

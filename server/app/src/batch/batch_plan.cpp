@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 #include "../input_file.hpp"
 #include "raykiln/api/job_json.hpp"
+#include "raykiln/api/picture_name.hpp"
+#include "raykiln/batches/batch.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -41,6 +44,12 @@ double number(const Value& map, std::string_view key, double low, double high, d
   return result;
 }
 
+int integer(const Value& map, std::string_view key, int low, int high, int fallback) {
+  const double value = number(map, key, low, high, fallback);
+  if (value != std::floor(value)) wrong(*map.find(key), std::string(key) + " must be an integer");
+  return static_cast<int>(value);
+}
+
 bool flag(const Value& map, std::string_view key, bool fallback) {
   const Value* value = map.find(key);
   if (value == nullptr) return fallback;
@@ -61,17 +70,6 @@ const std::vector<Value>& list(const Value& map, std::string_view key) {
   if (value == nullptr) return kNone;
   if (value->kind != Value::Kind::kList || value->list.empty()) wrong(*value, std::string(key) + " must be a list");
   return value->list;
-}
-
-std::string file_name_text(const std::string& text) {
-  std::string name;
-  for (const char c : text) {
-    const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
-                      c == '_' || c == '-';
-    name.push_back(fits ? c : '_');
-  }
-  if (name.starts_with('.')) name.front() = '_';
-  return name.substr(0, 100);
 }
 
 std::string camera_label(const Value& camera) {
@@ -106,9 +104,12 @@ class Planner {
       : file_(file), folder_(std::move(folder)), limits_(limits) {}
 
   BatchPlan plan() {
-    only(file_, "the batch", {"name", "fail_fast", "false_alarms", "tolerance",
+    only(file_, "the batch", {"name", "priority", "max_active", "reuse", "fail_fast", "false_alarms", "tolerance",
                               "thresholds", "defaults", "reference", "scenes"});
     plan_.name = text(file_, "name", "batch");
+    plan_.priority = integer(file_, "priority", 1, limits_.max_priority, plan_.priority);
+    plan_.max_active = integer(file_, "max_active", 1, kMostActiveItems, plan_.max_active);
+    plan_.reuse = flag(file_, "reuse", plan_.reuse);
     plan_.fail_fast = flag(file_, "fail_fast", false);
     read_comparison();
     const auto& scenes = list(file_, "scenes");
@@ -164,18 +165,18 @@ class Planner {
   void add_picture(const Value& scene, const std::filesystem::path& path, const std::string& label,
                    const Value& camera, const std::string& camera_name, const Value& setting) {
     const std::string setting_name = text(setting, "name", "");
-    std::string name = file_name_text(label);
-    if (!camera_name.empty()) name += '-' + file_name_text(camera_name);
-    if (!setting_name.empty()) name += '-' + file_name_text(setting_name);
+    const std::string name = picture_name(label, camera_name, setting_name);
     // Files are named after pictures, with endings of their own.
     for (const char* ending : {".reference", ".difference", ".z"}) {
       if (name.ends_with(ending)) wrong(scene, "the name \"" + name + "\" may not end in " + ending);
     }
-    if (name.size() > kMostName) wrong(scene, "the name of a picture is longer than " + std::to_string(kMostName));
+    if (name.size() > kMostPictureName) {
+      wrong(scene, "the name of a picture is longer than " + std::to_string(kMostPictureName));
+    }
     if (!names_.insert(name).second) {
       wrong(scene, "two pictures are named \"" + name + "\": give scenes or settings a name of their own");
     }
-    if (plan_.pictures.size() >= kMostPictures) wrong(scene, "more than " + std::to_string(kMostPictures) + " pictures");
+    if (plan_.pictures.size() >= kMostItems) wrong(scene, "more than " + std::to_string(kMostItems) + " pictures");
     PlannedPicture picture{.name = name, .scene = path, .reference = {}, .request = request(name, camera, setting)};
     const std::string pattern = text(scene, "reference", text(file_, "reference", ""));
     if (!pattern.empty()) {
@@ -199,7 +200,7 @@ class Planner {
     for (const auto& [key, value] : setting.map) {
       if (key != "name") whole.set(key, value);
     }
-    for (const char* key : {"scene", "name", "priority"}) {
+    for (const char* key : {"scene", "name", "priority", "reuse"}) {
       if (whole.find(key) != nullptr) wrong(*whole.find(key), std::string(key) + " is no setting of a picture");
     }
     for (const auto& [key, text] : {std::pair{"width", "640"}, {"height", "480"}}) {

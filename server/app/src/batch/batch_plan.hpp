@@ -21,14 +21,14 @@ struct PlannedPicture {
 
 struct BatchPlan {
   std::string name;
+  int priority = 10;              ///< on a server, as the next two
+  int max_active = 4;
+  bool reuse = true;              ///< take the pictures of equal jobs that have completed
   bool fail_fast = false;
   double false_alarms = 0.01;     ///< of the whole batch: shared by the pictures that have a reference
   ComparisonSettings comparison;  ///< its false_alarms is each picture's part
   std::vector<PlannedPicture> pictures;
 };
-
-inline constexpr std::size_t kMostPictures = 1000;
-inline constexpr std::size_t kMostName = 200;  ///< bytes; endings of files come on top
 
 /// Fields are described in proto/batch.schema.json. Paths are relative to `folder`. Errors: kInvalid
 /// "invalid_file" with the place in `where`.

@@ -37,6 +37,7 @@ std::size_t BatchResult::reused() const {
 }
 
 ExitCode outcome(const BatchResult& result) {
+  if (result.wait_ended) return ExitCode::kWaitEnded;
   for (const ExitCode grave : {ExitCode::kJobFailed, ExitCode::kJobCancelled, ExitCode::kImageDiffers,
                                ExitCode::kLimitReached}) {
     const bool there = std::any_of(result.pictures.begin(), result.pictures.end(),
@@ -64,6 +65,7 @@ std::string summary(const BatchResult& result) {
 std::string verdict_line(const PictureResult& r) {
   if (r.state == PictureState::kFailed) return r.failure;
   if (r.state == PictureState::kSkipped) return "skipped: another picture failed first";
+  if (r.state == PictureState::kWaiting) return "it had not ended when the wait did";
   if (r.state != PictureState::kCompleted) return name(r.state);
   if (r.reference_missing) return "there is no reference yet: look at the picture, then raykiln approve";
   if (r.comparison) return r.comparison->reason;

@@ -39,13 +39,14 @@ struct BatchResult {
   std::string batch;                    ///< id on the server; empty without one
   std::string server;                   ///< URL; empty without one
   double seconds = 0.0;                 ///< from the start to the last picture
+  bool wait_ended = false;              ///< before the batch, which goes on
 
   [[nodiscard]] std::size_t count(PictureState state) const;
   [[nodiscard]] std::size_t differing() const;
   [[nodiscard]] std::size_t reused() const;
 };
 
-/// The gravest: failed, then cancelled, then differs, then limit reached, then done.
+/// kWaitEnded where the wait did; else the gravest: failed, then cancelled, then differs, then limit reached, then done.
 [[nodiscard]] ExitCode outcome(const BatchResult& result);
 
 /// One line: "6 pictures: 5 completed (2 reused), 1 failed; 1 differs from its reference".

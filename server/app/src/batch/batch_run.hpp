@@ -1,10 +1,7 @@
 // The two ways to run a batch.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include "batch_result.hpp"
 #include "raykiln/app/cli.hpp"
@@ -18,7 +15,11 @@ struct BatchRun {
   bool quiet = false;
 };
 
-/// Fills the result; anything but kOk is a failure of this machine or, on a server, of the connection.
+/// Fills the result; anything but kOk is a failure of this machine.
 [[nodiscard]] ExitCode run_batch_here(const BatchRun& run, BatchResult& result);
+
+/// The same by the daemon of the options; or of the connection. `waited`: false when the batch was sent
+/// and not to be waited for.
+[[nodiscard]] ExitCode run_batch_on_server(const BatchRun& run, BatchResult& result, bool& waited);
 
 }  // namespace raykiln::server

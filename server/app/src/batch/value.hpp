@@ -32,9 +32,15 @@ struct Value {
 
 [[nodiscard]] Value text_value(std::string text);
 
-/// Reads YAML 1.2 (JSON is that too). Bounded: 1 MiB, 64 levels, 100000 nodes however often an alias
-/// repeats them. kInvalid "invalid_file" with the line in `where`.
-[[nodiscard]] Result<Value> parse_yaml(std::string_view text);
+/// How large a document may be: a batch file, unless said otherwise.
+struct DocumentBounds {
+  std::size_t bytes = std::size_t{1} << 20U;
+  int nodes = 100'000;  ///< however often an alias repeats them
+};
+
+/// Reads YAML 1.2 (JSON is that too), at most 64 levels deep, aliases written out in at most 4 times the bytes.
+/// kInvalid "invalid_file" with the line in `where`.
+[[nodiscard]] Result<Value> parse_yaml(std::string_view text, const DocumentBounds& bounds = {});
 
 /// The same value as JSON text.
 [[nodiscard]] std::string to_json(const Value& value);

@@ -8,10 +8,7 @@
 namespace raykiln::server {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
 constexpr int kMostLevels = 64;
-constexpr int kMostNodes = 100'000;
-constexpr std::size_t kMostText = 4 * kMostBytes;  ///< of all keys and values, aliases written out
 
 Error invalid(const std::string& why, int line) {
   return {ErrorKind::kInvalid, "invalid_file", why, line > 0 ? "line " + std::to_string(line) : ""};
@@ -19,10 +16,11 @@ Error invalid(const std::string& why, int line) {
 
 class Converter {
  public:
+  explicit Converter(const DocumentBounds& bounds) : bounds_(bounds), most_text_(4 * bounds.bytes) {}
   Value convert(const YAML::Node& node, int level) {
     Value value;
     value.line = node.Mark().line + 1;
-    if (++nodes_ > kMostNodes || level > kMostLevels) fail("the file is too deep or too large", value.line);
+    if (++nodes_ > bounds_.nodes || level > kMostLevels) fail("the file is too deep or too large", value.line);
     if (fault_) return value;
     if (node.IsScalar()) {
       value.kind = Value::Kind::kScalar;
@@ -52,13 +50,15 @@ class Converter {
   /// A short file may repeat a long text by many aliases.
   bool has_room(const YAML::Node& text, int line) {
     text_ += text.Scalar().size();
-    if (text_ > kMostText) fail("the file is too large with its aliases written out", line);
-    return text_ <= kMostText;
+    if (text_ > most_text_) fail("the file is too large with its aliases written out", line);
+    return text_ <= most_text_;
   }
   void fail(const std::string& why, int line) {
     if (!fault_) fault_ = invalid(why, line);
   }
 
+  const DocumentBounds& bounds_;
+  const std::size_t most_text_;  ///< of all keys and values
   int nodes_ = 0;
   std::size_t text_ = 0;
   std::optional<Error> fault_;
@@ -66,10 +66,12 @@ class Converter {
 
 }  // namespace
 
-Result<Value> parse_yaml(std::string_view text) {
-  if (text.size() > kMostBytes) return invalid("the file is larger than 1 MiB", 0);
+Result<Value> parse_yaml(std::string_view text, const DocumentBounds& bounds) {
+  if (text.size() > bounds.bytes) {
+    return invalid("the file is larger than " + std::to_string(bounds.bytes >> 20U) + " MiB", 0);
+  }
   try {
-    Converter converter;
+    Converter converter(bounds);
     Value value = converter.convert(YAML::Load(std::string(text)), 0);
     if (converter.fault()) return *converter.fault();
     return value;

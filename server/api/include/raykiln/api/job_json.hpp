@@ -56,6 +56,9 @@ struct JobView {
   std::optional<double> remaining_seconds;
   double rays_per_second = 0.0;
   std::string approximation;  ///< empty, or the label of effects that lack what the scene calls for
+  double render_seconds = 0.0;
+  std::optional<double> error_reached;  ///< of the picture, relative; as last judged
+  bool target_reached = false;          ///< an error target that was met
   bool has_image = false;
   std::string error;  ///< empty, or "code: detail (where)"
 };

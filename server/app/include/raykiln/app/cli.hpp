@@ -40,6 +40,11 @@ struct BatchOptions {
   std::filesystem::path junit, json;  ///< files to write; empty: none
   std::filesystem::path html;         ///< folder of the report; empty: none
   bool local = false;                 ///< in this process
+  bool no_reuse = false;              ///< render what was rendered before
+  std::string resume;                 ///< id of a batch that was sent before; empty: a new one
+  bool rerun = false;                 ///< of `resume`: what failed
+  bool cancel_on_interrupt = false;
+  double timeout_seconds = 0.0;       ///< of waiting; 0: none
 };
 
 /// What `approve` makes references of.

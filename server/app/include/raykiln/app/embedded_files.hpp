@@ -15,4 +15,7 @@ struct EmbeddedFile {
 
 [[nodiscard]] std::vector<EmbeddedFile> embedded_files();
 
+/// Digest of the sources and the compiler that pictures depend on: equal for programs that make equal pictures.
+[[nodiscard]] std::string_view engine_digest();
+
 }  // namespace raykiln::server

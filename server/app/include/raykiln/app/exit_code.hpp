@@ -19,6 +19,7 @@ enum class ExitCode : int {
   kCheckFailed = 10,    ///< selftest: a check failed; lint: the scene has errors
   kImageDiffers = 11,   ///< compare, batch: a render is not its reference
   kLimitReached = 12,   ///< batch: before the error target; accuracy: before the reference was exact enough
+  kWaitEnded = 13,      ///< batch: the wait ended (time, Ctrl-C) before the batch, which goes on
 };
 
 [[nodiscard]] inline int to_int(ExitCode code) { return static_cast<int>(code); }
@@ -37,7 +38,8 @@ enum class ExitCode : int {
          "  9  the server is busy or stopping; try again later\n"
          "  10 selftest: a check failed; lint: the scene has errors\n"
          "  11 compare, batch: a render differs from its reference\n"
-         "  12 batch: a limit was reached before the error target; accuracy: before the reference was exact enough\n";
+         "  12 batch: a limit was reached before the error target; accuracy: before the reference was exact enough\n"
+         "  13 batch: the wait ended (--timeout, Ctrl-C) before the batch, which goes on\n";
 }
 
 }  // namespace raykiln::server

@@ -84,6 +84,7 @@ struct Config {
   HttpSettings http;
   std::chrono::seconds drain{10};                ///< time for work in progress on SIGTERM
   std::string version = "0.1.0";
+  std::string engine;                            ///< equal for programs that make equal pictures
 };
 
 }  // namespace raykiln::server

@@ -2,13 +2,15 @@
 #pragma once
 
 #include "raykiln/api/api.hpp"
+#include "raykiln/api/batch_api.hpp"
 #include "raykiln/http/router.hpp"
 #include "raykiln/http/static_files.hpp"
 
 namespace raykiln::server {
 
-/// `api` and `files` must outlive the table. `files` holds index.html and what it needs, and
+/// `api`, `batches` and `files` must outlive the table. `files` holds index.html and what it needs, and
 /// openapi.yaml.
-[[nodiscard]] Router make_routes(Api& api, const StaticFiles& files, std::size_t max_json_bytes);
+[[nodiscard]] Router make_routes(Api& api, BatchApi& batches, const StaticFiles& files,
+                                 std::size_t max_json_bytes);
 
 }  // namespace raykiln::server

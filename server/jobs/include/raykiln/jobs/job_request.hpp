@@ -60,6 +60,7 @@ struct JobRequest {
   /// "auto", "all" or "without=refraction,roulette": which effects are simulated. The names are the
   /// renderer's; whoever reads a request from outside checks them.
   std::string effects = "auto";
+  bool reuse = false;           ///< a completed job whose picture is this one may stand in for it
 };
 
 [[nodiscard]] std::string_view name(PixelMode value);
@@ -77,5 +78,9 @@ struct JobRequest {
 
 /// Text that is equal exactly for equal requests: what an idempotency key is bound to.
 [[nodiscard]] std::string request_digest(const JobRequest& request);
+
+/// Text that is equal for requests that ask for the same picture of the same engine: `name`, `priority` and
+/// `reuse` are left out, every other field counts.
+[[nodiscard]] std::string result_digest(const JobRequest& request, std::string_view engine);
 
 }  // namespace raykiln::server

@@ -50,7 +50,8 @@ struct ExtendJob {
 
 struct SubmittedJob {
   JobSnapshot job;
-  bool created = false;  ///< false: the key was used before for an equal request
+  bool created = false;  ///< false: the key was used before for an equal request, or reused
+  bool reused = false;   ///< a job that had completed before, with the picture that was asked for
 };
 
 struct ListJobs {

@@ -84,6 +84,7 @@ struct JobRecord {
   std::string idempotency_key;  ///< empty: none
   std::string request_digest;
   std::string content;          ///< opaque here
+  std::string result_digest{};  ///< of the picture, see jobs; empty: not to be found by it
   std::uint64_t sequence = 0;   ///< set by the store: order of creation, for paging
 };
 
@@ -121,6 +122,8 @@ class Store {
   virtual Status put_job(const JobRecord& job) = 0;
   virtual Result<JobRecord> job(const std::string& id) = 0;  ///< "job_not_found"
   virtual Result<std::optional<JobRecord>> job_with_key(const std::string& idempotency_key) = 0;
+  /// The newest completed job with this picture.
+  virtual Result<std::optional<JobRecord>> job_with_result(const std::string& result_digest) = 0;
   /// Newest first.
   virtual Result<std::vector<JobRecord>> jobs(const JobQuery& query) = 0;
   /// Removes the oldest finished jobs, with their images, beyond `keep`.

@@ -1,0 +1,238 @@
+// A batch on a daemon: upload what it lacks, submit, follow, fetch and judge.
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+
+#include "../signals.hpp"
+#include "batch_judge.hpp"
+#include "batch_progress.hpp"
+#include "batch_run.hpp"
+#include "batch_scenes.hpp"
+#include "raykiln/api/batch_json.hpp"
+#include "raykiln/api/percent.hpp"
+#include "raykiln/api/scene_json.hpp"
+
+namespace raykiln::server {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr auto kFirstPoll = milliseconds(10), kLastPoll = milliseconds(250);
+constexpr auto kPatience = std::chrono::seconds(60);  ///< with a server that does not answer
+constexpr std::size_t kMostBars = 8;
+
+class RemoteBatch {
+ public:
+  RemoteBatch(const BatchRun& run, BatchResult& result, Remote remote)
+      : run_(run),
+        wanted_(run.options.batch),
+        result_(result),
+        remote_(std::move(remote)),
+        terminal_(isatty(STDERR_FILENO) != 0),
+        progress_(std::cerr, terminal_, run.quiet),
+        scenes_(result) {
+    result_.server = run.options.server;
+    for (std::size_t i = 0; i < result.pictures.size(); ++i) {
+      by_name_[result.plan.pictures[i].name] = i;
+      if (result.pictures[i].state == PictureState::kFailed) tell(i);  // its scene cannot be read
+    }
+  }
+
+  ExitCode go(bool& waited) {
+    result_.batch = wanted_.resume;
+    if (wanted_.resume.empty() && (!scenes_.upload(remote_) || !submit())) return remote_.failure();
+    if (wanted_.rerun && !remote_.ask("POST", path() + "/rerun")) return remote_.failure();
+    if (!is_to_be_waited_for()) {
+      std::cout << result_.batch << std::endl;
+      waited = false;
+      return ExitCode::kOk;
+    }
+    if (result_.batch.empty()) return ExitCode::kOk;  // no picture could be sent
+    block_stop_signals();  // waited for from here on; what renders is the server's
+    if (!run_.quiet) std::cerr << "batch " << result_.batch << " at " << result_.server << "/batches/" << result_.batch << std::endl;
+    const ExitCode followed = follow();
+    progress_.finish();
+    return followed;
+  }
+
+ private:
+  [[nodiscard]] std::string path() const { return "/v1/batches/" + percent_encode(result_.batch); }
+  [[nodiscard]] bool is_to_be_waited_for() const {
+    return run_.options.wait || run_.options.json || !wanted_.junit.empty() || !wanted_.json.empty() || !wanted_.html.empty();
+  }
+
+  bool submit() {
+    BatchRequest batch{.name = result_.plan.name, .priority = result_.plan.priority, .max_active = result_.plan.max_active,
+                       .fail_fast = result_.plan.fail_fast, .reuse = result_.plan.reuse && !wanted_.no_reuse};
+    for (std::size_t i = 0; i < result_.pictures.size(); ++i) {
+      if (result_.pictures[i].state == PictureState::kFailed) continue;
+      BatchItem item{.name = result_.plan.pictures[i].name, .request = result_.plan.pictures[i].request};
+      item.request.scene = result_.pictures[i].scene;
+      batch.items.push_back(std::move(item));
+    }
+    const bool failed = batch.items.size() < result_.pictures.size();
+    if (batch.items.empty() || (failed && batch.fail_fast)) {
+      skip_the_rest();
+      return true;
+    }
+    ClientHeaders headers{{"Content-Type", "application/json"}};
+    if (!run_.options.idempotency_key.empty()) headers.emplace_back("Idempotency-Key", run_.options.idempotency_key);
+    const auto answer = remote_.ask("POST", "/v1/batches", headers, batch_request_json(batch));
+    const auto view = answer ? parse_batch_view(answer->body) : std::nullopt;
+    if (answer && !view) remote_.fail(ExitCode::kFailure, "the server's answer is no batch");
+    if (view) result_.batch = view->id;
+    return view.has_value();
+  }
+
+  void skip_the_rest() {
+    for (PictureResult& picture : result_.pictures) {
+      if (picture.state == PictureState::kWaiting) picture.state = PictureState::kSkipped;
+    }
+  }
+
+  ExitCode follow() {
+    const auto begun = steady_clock::now();
+    auto heard = begun;
+    auto pause = kFirstPoll;
+    bool cancelling = false;
+    while (true) {
+      auto answer = HttpClient(remote_.address()).request("GET", path());
+      if (answer && answer->status != 503) {
+        heard = steady_clock::now();
+        const auto checked = remote_.check(std::move(answer));
+        if (!checked) return remote_.failure();
+        const auto view = parse_batch_view(checked->body);
+        if (!view) return remote_.fail(ExitCode::kFailure, "the server's answer is no batch");
+        if (const ExitCode taken = take(*view); taken != ExitCode::kOk) return taken;
+        if (view->state != "running") return ExitCode::kOk;
+      } else if (steady_clock::now() - heard > kPatience) {
+        progress_.finish();
+        return remote_.fail(ExitCode::kNoServer, "the server does not answer; batch " + result_.batch + " goes on when it is back");
+      }
+      if (stop_signal_within(pause)) {
+        if (!wanted_.cancel_on_interrupt || cancelling) return detach("detached");
+        cancelling = true;
+        if (!remote_.ask("POST", path() + "/cancel")) return remote_.failure();
+      }
+      pause = std::min(kLastPoll, pause * 3 / 2);
+      const double waited = std::chrono::duration<double>(steady_clock::now() - begun).count();
+      if (wanted_.timeout_seconds > 0.0 && waited > wanted_.timeout_seconds) return detach("the time to wait is over");
+    }
+  }
+
+  /// The reports say what is known by now.
+  ExitCode detach(const char* why) {
+    progress_.finish();
+    std::cerr << "raykiln: " << why << "; the batch goes on. Wait for it again with --resume " << result_.batch << '\n';
+    if (!run_.options.json) std::cout << result_.batch << std::endl;
+    result_.wait_ended = true;
+    return ExitCode::kOk;
+  }
+
+  /// Judges what has ended since the last look, and shows the rest.
+  ExitCode take(const BatchView& view) {
+    std::vector<RunningPicture> running;
+    for (const BatchItemView& item : view.items) {
+      const auto found = by_name_.find(item.name);
+      if (found == by_name_.end() || item.state == "waiting") continue;
+      if (result_.pictures[found->second].state != PictureState::kWaiting) continue;
+      if (item.state == "active") {
+        running.push_back({item.name, progress_of_job(running.size() < kMostBars ? item.job : "")});
+      } else if (const ExitCode ended = take_ended(found->second, item); ended != ExitCode::kOk) {
+        return ended;
+      }
+    }
+    const auto total = result_.pictures.size();
+    progress_.show(total - result_.count(PictureState::kWaiting), total, running);
+    return ExitCode::kOk;
+  }
+
+  ExitCode take_ended(std::size_t index, const BatchItemView& item) {
+    PictureResult& picture = result_.pictures[index];
+    picture.job = item.job;
+    picture.reused = item.reused;
+    if (item.state == "completed") {
+      if (const ExitCode judged = fetch_and_judge(index); judged != ExitCode::kOk) return judged;
+    } else if (item.state == "cancelled") {
+      picture.state = PictureState::kCancelled;
+    } else if (item.state == "skipped") {
+      picture.state = PictureState::kSkipped;
+    } else {
+      const std::string refusal = scenes_.refusal(picture.scene);
+      fail(picture, refusal.empty() ? item.error : refusal);
+    }
+    tell(index);
+    return ExitCode::kOk;
+  }
+
+  /// An answer that the picture alone has to do with, or nothing: then the reason is in `picture`, or `remote_` has
+  /// failed and with it the batch.
+  std::optional<ClientResponse> ask_for(PictureResult& picture, const std::string& target) {
+    auto answer = HttpClient(remote_.address()).request("GET", target);
+    if (answer && (answer->status == 404 || answer->status == 500)) {
+      fail(picture, problem_text(answer->body));
+      return std::nullopt;
+    }
+    return remote_.check(std::move(answer));
+  }
+
+  ExitCode fetch_and_judge(std::size_t index) {
+    const PlannedPicture& planned = result_.plan.pictures[index];
+    PictureResult& picture = result_.pictures[index];
+    const std::string job = "/v1/jobs/" + percent_encode(picture.job);
+    const auto about = ask_for(picture, job);
+    if (!about) return remote_.failure();
+    const auto view = parse_job_view(about->body);
+    if (!view) return remote_.fail(ExitCode::kFailure, "the server's answer is no job");
+    picture.state = PictureState::kCompleted;
+    picture.seconds = picture.reused ? 0.0 : view->render_seconds;
+    picture.samples = view->samples_done;
+    picture.error_reached = view->error_reached;
+    picture.limit_reached = planned.request.stop.error && !view->target_reached;
+    if (planned.reference.empty() && wanted_.html.empty()) return ExitCode::kOk;
+    const auto exr = ask_for(picture, job + "/image?format=exr");
+    if (!exr) return remote_.failure();
+    const auto judged = judge_render(result_.plan, planned, {exr->body.begin(), exr->body.end()}, run_.folder, picture);
+    return judged ? ExitCode::kOk : remote_.fail(ExitCode::kFailure, judged.error().message);
+  }
+
+  [[nodiscard]] ProgressState progress_of_job(const std::string& job) const {
+    ProgressState state;
+    state.stage = "rendering";
+    if (run_.quiet || !terminal_ || job.empty()) return state;
+    const auto answer = HttpClient(remote_.address()).request("GET", "/v1/jobs/" + percent_encode(job));
+    const auto view = answer && answer->status == 200 ? parse_job_view(answer->body) : std::nullopt;
+    return view ? progress_of(*view) : state;
+  }
+
+  static void fail(PictureResult& picture, const std::string& why) {
+    picture.state = PictureState::kFailed;
+    picture.failure = why;
+  }
+  void tell(std::size_t index) {
+    const PictureResult& picture = result_.pictures[index];
+    progress_.ended(result_.plan.pictures[index].name, verdict_line(picture) + (picture.reused ? " (reused)" : ""));
+  }
+
+  const BatchRun& run_;
+  const BatchOptions& wanted_;
+  BatchResult& result_;
+  Remote remote_;
+  const bool terminal_;
+  BatchProgress progress_;
+  BatchScenes scenes_;
+  std::map<std::string, std::size_t> by_name_;
+};
+
+}  // namespace
+
+ExitCode run_batch_on_server(const BatchRun& run, BatchResult& result, bool& waited) {
+  auto remote = Remote::open(run.options);
+  if (!remote) return ExitCode::kUsage;
+  return RemoteBatch(run, result, std::move(*remote)).go(waited);
+}
+
+}  // namespace raykiln::server
