@@ -108,7 +108,8 @@ class Matrix {
     whole.update(setting);
     const auto own_name = whole.find("name");
     const std::string setting_name = own_name != whole.end() && own_name->is_string() ? own_name->get<std::string>() : "";
-    BatchItem item{.name = picture_name(label, camera_label(camera), setting_name), .request = {}};
+    BatchItem item;
+    item.name = picture_name(label, camera_label(camera), setting_name);
     if (item.name.size() > kMostPictureName) return wrong(pointer, "out_of_range", "makes a name that is too long");
     if (!names_.insert(item.name).second) {
       return wrong(pointer, "invalid_value", "two pictures are named \"" + item.name + '"');

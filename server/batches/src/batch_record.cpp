@@ -106,7 +106,9 @@ std::optional<Batch> decode_batch(std::string_view request, std::string_view sta
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto job = decode_job(requests[i]);
     if (!job) return std::nullopt;
-    BatchItem item{.name = names[i], .request = job->request};
+    BatchItem item;
+    item.name = names[i];
+    item.request = job->request;
     if (!decode_item_state(states[i], item)) return std::nullopt;
     whole.items.push_back(std::move(item));
   }

@@ -11,7 +11,8 @@ const std::string kScene(64, 'a');
 BatchRequest good() {
   BatchRequest batch{.name = "n", .priority = 7, .max_active = 3, .fail_fast = true, .reuse = false};
   for (const char* name : {"one", "two"}) {
-    BatchItem item{.name = name, .request = {}};
+    BatchItem item;
+    item.name = name;
     item.request.scene = kScene;
     item.request.name = name;
     item.request.camera = OwnCamera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30.0};

@@ -27,8 +27,11 @@ struct Runner : testing::Test {
   [[nodiscard]] BatchRequest request(std::size_t items, std::uint64_t samples = 2) const {
     BatchRequest batch;
     for (std::size_t i = 0; i < items; ++i) {
-      batch.items.push_back({.name = std::string("p").append(std::to_string(i)), .request = small_job(scene, samples)});
-      batch.items.back().request.seed = i;
+      BatchItem item;
+      item.name = std::string("p").append(std::to_string(i));
+      item.request = small_job(scene, samples);
+      item.request.seed = i;
+      batch.items.push_back(std::move(item));
     }
     return batch;
   }

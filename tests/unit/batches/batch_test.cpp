@@ -9,7 +9,8 @@ namespace {
 Batch batch_of(std::size_t items, int max_active = 2, bool fail_fast = false) {
   BatchRequest request{.name = "n", .priority = 7, .max_active = max_active, .fail_fast = fail_fast};
   for (std::size_t i = 0; i < items; ++i) {
-    BatchItem item{.name = std::string("p").append(std::to_string(i)), .request = {}};
+    BatchItem item;
+    item.name = std::string("p").append(std::to_string(i));
     item.request.scene = std::string(64, 'a');
     item.request.seed = i;
     request.items.push_back(item);

@@ -69,7 +69,9 @@ class RemoteBatch {
                        .fail_fast = result_.plan.fail_fast, .reuse = result_.plan.reuse && !wanted_.no_reuse};
     for (std::size_t i = 0; i < result_.pictures.size(); ++i) {
       if (result_.pictures[i].state == PictureState::kFailed) continue;
-      BatchItem item{.name = result_.plan.pictures[i].name, .request = result_.plan.pictures[i].request};
+      BatchItem item;
+      item.name = result_.plan.pictures[i].name;
+      item.request = result_.plan.pictures[i].request;
       item.request.scene = result_.pictures[i].scene;
       batch.items.push_back(std::move(item));
     }
