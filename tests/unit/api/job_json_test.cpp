@@ -119,9 +119,10 @@ TEST(JobRequestJson, EffectsHaveOneSpelling) {
     json body = smallest();
     body["effects"] = value;
     const auto parsed = parse_job_request(body.dump(), JobLimits{});
-    return std::get<JobRequest>(parsed).effects;
+    return std::get_if<JobRequest>(&parsed)->effects;
   };
-  EXPECT_EQ(effects_of("auto"), JobRequest{}.effects);
+  const JobRequest plain;
+  EXPECT_EQ(effects_of("auto"), plain.effects);
   EXPECT_EQ(effects_of("all"), "all");
   EXPECT_EQ(effects_of({{"without", {"roulette", "refraction"}}}), "without=refraction,roulette");
 }
