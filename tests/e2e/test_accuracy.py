@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from support.api import problem
+from support.daemon import SLOW
 from support.image_files import read_png
 
 
@@ -46,7 +47,7 @@ def test_the_curve_of_a_job(api, samples, done):
     assert short["points"][-1]["error"] == done["accuracy"]["error"]
     assert short["target"] is None and short["seconds_to_target"] is None
 
-    request = {"width": 32, "height": 24, "stop": {"seconds": 1.5, "error": 0.0001}}
+    request = {"width": 32, "height": 24, "stop": {"seconds": 1.5 * SLOW, "error": 0.0001}}
     job = api.wait(api.submit(samples["box"], **request).json()["id"])
     curve = api.json(f"/v1/jobs/{job['id']}/accuracy")
     seconds = [point["render_seconds"] for point in curve["points"]]
