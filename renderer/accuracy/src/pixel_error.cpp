@@ -1,5 +1,6 @@
 #include "raykiln/accuracy/pixel_error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,7 @@ namespace raykiln::render {
 namespace {
 
 constexpr int kWindowRadius = 1;
+constexpr int kStripRows = 16;  ///< rows that are worked on at once: what they need stays near the processor
 
 std::size_t pixels_of(const Film& film) {
   return static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
@@ -19,15 +21,14 @@ std::size_t pixels_of(const Film& film) {
 /// Variances of one channel, drawn to those of their windows. One sample of many that make up a
 /// variance adds (share v) of it, so that the estimate scatters by share v^2.
 std::vector<double> pooled(const std::vector<PixelStatistics>& pixels, std::size_t channel,
-                           const Windows& windows) {
-  std::vector<double> own(pixels.size()), scatter(pixels.size()), known(pixels.size());
+                           const Windows& windows, const std::vector<double>& counts) {
+  std::vector<double> own(pixels.size()), scatter(pixels.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     own[i] = pixels[i].variance[channel];
     scatter[i] = pixels[i].largest_share * own[i] * own[i];
-    known[i] = pixels[i].known ? 1.0 : 0.0;
   }
   const auto shares = noise_shares(own, scatter, windows);
-  const auto sums = windows.sums(own), counts = windows.sums(known);
+  const auto sums = windows.sums(own);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (pixels[i].known) own[i] += shares[i] * (sums[i] / counts[i] - own[i]);
   }
@@ -37,18 +38,31 @@ std::vector<double> pooled(const std::vector<PixelStatistics>& pixels, std::size
 }  // namespace
 
 PixelErrors pixel_errors(const Film& film) {
-  const std::size_t pixels = pixels_of(film);
+  const std::size_t pixels = pixels_of(film), width = static_cast<std::size_t>(film.width());
   PixelErrors result{.width = film.width(),
                      .height = film.height(),
                      .mean = std::vector<double>(3 * pixels),
                      .standard_error = std::vector<double>(3 * pixels, std::numeric_limits<double>::quiet_NaN())};
-  std::vector<PixelStatistics> statistics(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) statistics[i] = pixel_statistics(film.pixel(i));
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto variances = pooled(statistics, c, {film.width(), film.height(), kWindowRadius});
-    for (std::size_t i = 0; i < pixels; ++i) {
-      result.mean[3 * i + c] = statistics[i].mean[c];
-      if (statistics[i].known) result.standard_error[3 * i + c] = std::sqrt(variances[i]);
+  for (int y0 = 0; y0 < film.height(); y0 += kStripRows) {
+    const int y1 = std::min(y0 + kStripRows, film.height());
+    // With as many rows around as windows reach.
+    const int first = std::max(0, y0 - kWindowRadius), last = std::min(film.height(), y1 + kWindowRadius);
+    const std::size_t offset = static_cast<std::size_t>(first) * width;
+    std::vector<PixelStatistics> strip(static_cast<std::size_t>(last - first) * width);
+    std::vector<double> known(strip.size());
+    for (std::size_t i = 0; i < strip.size(); ++i) {
+      strip[i] = pixel_statistics(film.pixel(offset + i));
+      known[i] = strip[i].known ? 1.0 : 0.0;
+    }
+    const Windows windows{film.width(), last - first, kWindowRadius};
+    known = windows.sums(known);  // how many of each window are
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto variances = pooled(strip, c, windows, known);
+      for (std::size_t i = static_cast<std::size_t>(y0) * width; i < static_cast<std::size_t>(y1) * width; ++i) {
+        const PixelStatistics& p = strip[i - offset];
+        result.mean[3 * i + c] = p.mean[c];
+        if (p.known) result.standard_error[3 * i + c] = std::sqrt(variances[i - offset]);
+      }
     }
   }
   return result;

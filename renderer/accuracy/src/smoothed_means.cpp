@@ -27,6 +27,7 @@ std::array<std::vector<double>, 3> smoothed_means(std::span<const PixelStatistic
                                                   const Windows& windows) {
   const auto noise = [](const PixelStatistics& p) { return p.variance_without; };
   const auto shares = noise_shares(gather(pixels, rest), gather(pixels, noise), windows);
+  const auto counts = windows.counts();
   std::array<std::vector<double>, 3> result;
   for (std::size_t c = 0; c < 3; ++c) {
     const auto peak = [c](const PixelStatistics& p) { return p.mean[c] * part_of_largest(p); };
@@ -36,7 +37,7 @@ std::array<std::vector<double>, 3> smoothed_means(std::span<const PixelStatistic
     result[c].resize(pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const double own = base(pixels[i]);
-      result[c][i] = windows.count(i) < 2.0 ? pixels[i].mean[c]
+      result[c][i] = counts[i] < 2.0 ? pixels[i].mean[c]
                                             : own + shares[i] * (bases[i] - own) + peaks[i];
     }
   }

@@ -15,6 +15,8 @@ struct Windows {
 
   /// Pixels of the window about a pixel.
   [[nodiscard]] double count(std::size_t pixel) const;
+  /// The same of all pixels, without a division for each.
+  [[nodiscard]] std::vector<double> counts() const;
 
   /// Means of the windows without the pixel in their middle; 0 where it is alone.
   [[nodiscard]] std::vector<double> means_of_others(const std::vector<double>& values) const;

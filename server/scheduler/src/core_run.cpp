@@ -13,6 +13,9 @@
 namespace raykiln::server {
 namespace {
 
+/// Pixels of which the error is judged in some hundredths of a second.
+constexpr int kJudgedAtOnce = 65536;
+
 TaskLength task_length(const SchedulerSettings& settings) {
   TaskLength length;
   length.low_seconds = settings.task_seconds_low;
@@ -298,14 +301,16 @@ void Scheduler::Core::archive_if_drained(LiveJob& job) {
   if (job.snapshot.progress.samples_done == 0) return archived(id, success(), nullptr, std::nullopt);
   const JobImagePtr beauty = resolve(job, false);
   // Nothing is merged any more: the film is read, and its error judged, where it holds up nobody.
-  disk_.post([this, id, beauty, film = std::shared_ptr<const render::Film>(job.film),
+  // Who cancels does not wait: the error of a large picture is the one last judged.
+  const bool judged = *job.ending != JobEvent::kDrained || job.settings.width * job.settings.height <= kJudgedAtOnce;
+  disk_.post([this, id, beauty, judged, film = std::shared_ptr<const render::Film>(job.film),
               seconds = std::move(job.pixel_seconds),
               samples_area = job.snapshot.request.pixel_mode == PixelMode::kRandom] {
     Status saved = success();
     std::optional<PictureError> error;
     auto image = std::make_shared<JobImage>(*beauty);
     try {
-      error = judge_picture(*film, samples_area);
+      if (judged) error = judge_picture(*film, samples_area);
       add_layers(*image, *film, seconds);
       const auto& picture = image->image;
       saved = parts_.store.put_image(id, {picture.width, picture.height, picture.rgb, image->error,
