@@ -13,7 +13,7 @@ constexpr double kShareOfTime = 0.005;
 /// Looks follow at least so far apart, as a ratio of render seconds.
 constexpr double kStep = 1.1;
 /// Larger films are judged at decisions and in the end only: one look would hold up this strand.
-constexpr std::uint64_t kMostLivePixels = 4'000'000;
+constexpr std::uint64_t kMostLivePixels = 500'000;
 
 bool samples_area(const JobSnapshot& job) { return job.request.pixel_mode == PixelMode::kRandom; }
 
