@@ -45,6 +45,7 @@ struct LiveJob {
   SteadyTime published_at{};
 
   // The error of the picture.
+  bool measuring = false;   ///< a copy of the film is being judged
   double measure_at = 0.0;  ///< render seconds from which it is judged anew
   std::vector<float> pixel_seconds;  ///< of workers
 
@@ -131,7 +132,8 @@ class Scheduler::Core {
   void rest(LiveJob& job);
   void finish(LiveJob& job, DoneBy by);
   void measure_if_due(LiveJob& job);
-  void note_error(LiveJob& job, PictureError error);
+  void measured(const JobId& id, const PictureError& error, double cost, const JobStatistics& then);
+  void note_error(LiveJob& job, PictureError error, const JobStatistics& then);
 
   // core_publish.cpp
   void transition(LiveJob& job, JobEvent event, std::optional<Error> error = std::nullopt);

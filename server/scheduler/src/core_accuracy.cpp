@@ -12,7 +12,7 @@ namespace {
 constexpr double kShareOfTime = 0.005;
 /// Looks follow at least so far apart, as a ratio of render seconds.
 constexpr double kStep = 1.1;
-/// Larger films are judged at decisions and in the end only: one look would hold up this strand.
+/// Larger films are judged at decisions and in the end only: a look copies the film.
 constexpr std::uint64_t kMostLivePixels = 500'000;
 
 bool samples_area(const JobSnapshot& job) { return job.request.pixel_mode == PixelMode::kRandom; }
@@ -56,7 +56,7 @@ void Scheduler::Core::rest(LiveJob& job) {
   if (job.plan->closed()) return finish(job, DoneBy::kSeconds);
   const SteadyTime begin = parts_.clock.steady();
   refresh(job);
-  note_error(job, judge_picture(*job.film, samples_area(job.snapshot)));
+  note_error(job, judge_picture(*job.film, samples_area(job.snapshot)), job.snapshot.statistics);
   job.snapshot.statistics.accuracy_seconds += seconds_between(begin, parts_.clock.steady());
   if (target_met(job.snapshot.request.stop, *job.snapshot.accuracy)) {
     return finish(job, DoneBy::kError);
@@ -88,21 +88,47 @@ void Scheduler::Core::measure_if_due(LiveJob& job) {
   const double now = s.statistics.render_seconds;
   const bool whole = s.progress.tiles_started == s.progress.tiles && s.progress.samples_per_pixel >= 2.0;
   const auto pixels = static_cast<std::uint64_t>(s.request.width) * static_cast<std::uint64_t>(s.request.height);
-  if (!whole || now < job.measure_at || pixels > kMostLivePixels) return;
+  if (!whole || job.measuring || now < job.measure_at || pixels > kMostLivePixels) return;
+  // Judged elsewhere, from a copy: workers would run out of tasks while this strand looks at every pixel.
   const SteadyTime begin = parts_.clock.steady();
-  note_error(job, judge_picture(*job.film, samples_area(s)));
-  const double cost = seconds_between(begin, parts_.clock.steady());
-  s.statistics.accuracy_seconds += cost;
-  job.measure_at = std::max(kStep * now, now + cost / kShareOfTime);
+  const auto film = std::make_shared<const render::Film>(*job.film);
+  const double copying = seconds_between(begin, parts_.clock.steady());
+  job.measuring = true;
+  disk_.post([this, id = s.id, film, copying, area = samples_area(s), then = s.statistics] {
+    const SteadyTime looked = parts_.clock.steady();
+    PictureError error;
+    try {
+      error = judge_picture(*film, area);
+    } catch (const std::exception& fault) {  // there is no other look at this job but the last
+      return parts_.log.warn("error_not_judged", {{"job", id}, {"why", fault.what()}});
+    }
+    const double cost = copying + seconds_between(looked, parts_.clock.steady());
+    post([this, id, error, cost, then] { measured(id, error, cost, then); });
+  });
 }
 
-void Scheduler::Core::note_error(LiveJob& job, PictureError error) {
+/// A look has ended. What was judged since then is newer.
+void Scheduler::Core::measured(const JobId& id, const PictureError& error, double cost,
+                               const JobStatistics& then) {
+  LiveJob* job = find(id);
+  if (job == nullptr) return;
+  JobSnapshot& s = job->snapshot;
+  job->measuring = false;
+  s.statistics.accuracy_seconds += cost;
+  job->measure_at = std::max(kStep * then.render_seconds, then.render_seconds + cost / kShareOfTime);
+  const bool newer = s.curve.empty() || then.render_seconds > s.curve.back().render_seconds;
+  if (job->ending || !newer) return;
+  note_error(*job, error, then);
+  publish_soon(*job);
+}
+
+void Scheduler::Core::note_error(LiveJob& job, PictureError error, const JobStatistics& then) {
   JobSnapshot& s = job.snapshot;
   if (error.known()) {
-    add_point(s.curve, {.render_seconds = s.statistics.render_seconds,
-                        .worker_seconds = s.statistics.worker_seconds,
+    add_point(s.curve, {.render_seconds = then.render_seconds,
+                        .worker_seconds = then.worker_seconds,
                         .samples = error.mean_samples,
-                        .rays = s.statistics.rays(),
+                        .rays = then.rays(),
                         .error = error.error});
     for (const Forecast& scored : update_forecasts(s.forecasts, s.curve, basis_of(error))) {
       parts_.metrics

@@ -326,7 +326,7 @@ void Scheduler::Core::archived(const JobId& id, const Status& saved, JobImagePtr
                                std::optional<PictureError> found) {
   LiveJob* job = find(id);
   if (job == nullptr) return;
-  if (found) note_error(*job, std::move(*found));
+  if (found) note_error(*job, std::move(*found), job->snapshot.statistics);
   JobEvent event = *job->ending;
   auto error = std::move(job->ending_error);
   if (!saved) {
