@@ -35,12 +35,6 @@ std::vector<double> Windows::sums(const std::vector<double>& values) const {
   return result;
 }
 
-double Windows::count(std::size_t pixel) const {
-  const auto w = static_cast<std::size_t>(width);
-  return static_cast<double>(within(static_cast<int>(pixel % w), width, radius) *
-                             within(static_cast<int>(pixel / w), height, radius));
-}
-
 std::vector<double> Windows::counts() const {
   std::vector<double> result;
   result.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -13,9 +13,7 @@ struct Windows {
   /// Of all pixels, in O(pixels).
   [[nodiscard]] std::vector<double> sums(const std::vector<double>& values) const;
 
-  /// Pixels of the window about a pixel.
-  [[nodiscard]] double count(std::size_t pixel) const;
-  /// The same of all pixels, without a division for each.
+  /// Pixels of the window about each pixel.
   [[nodiscard]] std::vector<double> counts() const;
 
   /// Means of the windows without the pixel in their middle; 0 where it is alone.

@@ -36,8 +36,6 @@ struct Transport {
 struct Switches {
   bool transmission = true;  ///< light may come from or go to the far side of a surface
   bool specular = true;      ///< Phong lobes
-  const EnvironmentLight* environment = nullptr;
-  bool environment_sampling = false;  ///< shadow rays are sent to it, too
   bool normals = true;       ///< shading normals
   bool bounces = true;       ///< paths go on after the first hit
   bool reduced = false;      ///< something that is called for is left out: asked at every vertex

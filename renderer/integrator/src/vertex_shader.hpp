@@ -48,22 +48,20 @@ inline bool survives_roulette(PathState& path, const VertexKey& key) {
   return true;
 }
 
+/// Cosine of a direction over the plane of normal `ng`, times its length; 0 when it lies in it as far as doubles can
+/// tell.
+inline double cosine_over(const Vec3d& ng, const Vec3d& direction) {
+  const double cosine = dot(ng, direction);
+  return std::abs(cosine) <= 0x1p-50 * dot(abs(ng), abs(direction)) ? 0.0 : cosine;
+}
+
 /// Signed height of `light` over the plane of triangle `id`; 0 when it lies in it as far as doubles
 /// can tell, for then the sign is that of a rounding error. Differences of floats are exact in
 /// double or nearly so: a light one float step off an axis-parallel plane is never taken for one in
 /// it.
 inline double height_over(const TriangleMesh& mesh, std::uint32_t id, const Vec3d& ng,
                           const Vec3d& light) {
-  const Vec3d way = light - Vec3d(mesh.positions[mesh.triangles[id][0]]);
-  const double height = dot(ng, way);
-  return std::abs(height) <= 0x1p-50 * dot(abs(ng), abs(way)) ? 0.0 : height;
-}
-
-/// Cosine of a direction over the plane of normal `ng`; 0 when it lies in it as far as doubles can
-/// tell.
-inline double cosine_over(const Vec3d& ng, const Vec3d& direction) {
-  const double cosine = dot(ng, direction);
-  return std::abs(cosine) <= 0x1p-50 * dot(abs(ng), abs(direction)) ? 0.0 : cosine;
+  return cosine_over(ng, light - Vec3d(mesh.positions[mesh.triangles[id][0]]));
 }
 
 /// Density over solid angle of a density over area, seen over `distance2` under `cosine`.

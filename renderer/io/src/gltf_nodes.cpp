@@ -198,7 +198,7 @@ bool GltfNodes::light(const JsonAt& node, std::uint64_t index, const Mat4d& to_w
   const JsonAt at = lights->element(static_cast<std::size_t>(index));
   if (!at.expect_object()) return false;
   const ImportLimits& limits = node.diagnostics().limits();
-  if (draft_->lights.size() >= limits.max_point_lights) {
+  if (draft_->lights.size() >= limits.max_lights) {
     return at.fail(ImportErrorCode::kLimitExceeded, "too many lights");
   }
   const auto made = read_gltf_light(at, node, to_world);

@@ -60,7 +60,7 @@ bool read_light(const JsonAt& at, const KindOfList& of, DraftLight& light) {
 bool read_list(const JsonAt& root, const KindOfList& of, SceneDraft& draft) {
   const auto list = root.array(of.list);
   if (!list) return !root.diagnostics().failed();
-  if (list->size() > root.diagnostics().limits().max_point_lights) {
+  if (draft.lights.size() + list->size() > root.diagnostics().limits().max_lights) {
     return list->fail(ImportErrorCode::kLimitExceeded, "too many lights");
   }
   for (std::size_t i = 0; i < list->size(); ++i) {

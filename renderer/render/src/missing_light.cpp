@@ -113,10 +113,15 @@ double brightest_emitter(const Scene& scene) {
   return static_cast<double>(largest);
 }
 
+/// Each is a shadow ray at every vertex.
+std::size_t lights_without_surface(const Emitters& emitters) {
+  return emitters.point_lights().size() + emitters.spot_lights().size() + emitters.directional_lights().size();
+}
+
 }  // namespace
 
 std::uint64_t affordable_probes(const PreparedScene& scene, const RenderSettings& settings) {
-  const double lights = 2.0 + static_cast<double>(scene.emitters().point_lights().size());
+  const double lights = 2.0 + static_cast<double>(lights_without_surface(scene.emitters()));
   const double of_pair = 2.0 * lights * std::min(path_limit(settings) + 1, 32);
   const auto probes = static_cast<std::uint64_t>(std::min(kMostProbes, kMostRays / of_pair));
   return probes < kLeastProbes ? 0 : probes;
@@ -152,7 +157,7 @@ std::vector<RenderNotice> missing_light_notices(const PreparedScene& scene,
   const MissingLight cut = cut_off_light(scene, settings, probes);
   if (cut.differing > 0 && cut.share() + 2.0 * cut.share_error() >= kWorthSaying) {
     notices.push_back({"truncated_paths", "paths end after " + std::to_string(path_limit(settings)) +
-                                              " reflections: " + percent(cut.share()) + " +- " +
+                                              " reflections: " + percent(std::max(0.0, cut.share())) + " +- " +
                                               percent(cut.share_error()) +
                                               " of the picture's light is missing, however many samples there are"});
   }
@@ -161,7 +166,7 @@ std::vector<RenderNotice> missing_light_notices(const PreparedScene& scene,
     char most[32];
     std::snprintf(most, sizeof most, "%.3g",
                   kRuleOfThree * brightest_emitter(scene.scene()) / static_cast<double>(unseen.probes));
-    notices.push_back({"unseen_light", "paths seldom find the emitters by themselves: " + std::to_string(probes) +
+    notices.push_back({"unseen_light", "paths seldom find the emitters by themselves: " + std::to_string(unseen.probes) +
                                            " of them miss " + percent(unseen.share()) + " +- " +
                                            percent(unseen.share_error()) +
                                            " of the picture's light, where no noise is seen; up to " + most +

@@ -154,6 +154,7 @@ Study measure_knobs(std::shared_ptr<const Scene> scene, const std::vector<Varian
     r.samples = reference.samples();
     r.seconds = reference.seconds();
     if (!(mean_of(truth) > 0.0)) continue;
+    r.black = false;
     scale = scales(truth);
     r.error = own_error(halves, scale);
     r.smallest_error = judge(rendered, truth);

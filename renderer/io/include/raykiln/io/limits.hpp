@@ -11,7 +11,7 @@ struct ImportLimits {
   std::uint64_t max_vertices = 50'000'000;  ///< positions, and vertex normals, each
   std::size_t max_materials = 100'000;
   std::size_t max_cameras = 1'000;
-  std::size_t max_point_lights = 100'000;
+  std::size_t max_lights = 100'000;
   double max_coordinate = 1e15;  ///< largest |world coordinate|, metres
   double max_radiance = 1e30;    ///< largest component of any emission, light or background
 

@@ -48,8 +48,9 @@ struct StudyReference {
   double seconds = 0.0;
   double error = 0.0;  ///< its own, from the difference of its halves
   double smallest_error = 0.0;  ///< of all points
+  bool black = true;            ///< it has found no light: nothing can be judged
   /// Its error is at most a tenth of the smallest one that is shown.
-  [[nodiscard]] bool exact_enough() const { return 10.0 * error <= smallest_error; }
+  [[nodiscard]] bool exact_enough() const { return !black && 10.0 * error <= smallest_error; }
 };
 
 struct Study {
