@@ -49,6 +49,13 @@ Basis basis_of(const JobSnapshot& job) {
   return job.accuracy ? server::basis_of(*job.accuracy) : Basis::kRough;
 }
 
+/// Whether a job with this target would end here.
+bool reached(const JobSnapshot& job, double error) {
+  StopRule rule;
+  rule.error = error;
+  return job.accuracy && target_met(rule, *job.accuracy);
+}
+
 /// Errors that have a price.
 constexpr double kPriced[] = {0.1, 0.05, 0.02, 0.01, 0.005};
 
@@ -56,12 +63,11 @@ constexpr double kPriced[] = {0.1, 0.05, 0.02, 0.01, 0.005};
 Json prices_value(const JobSnapshot& job) {
   const Basis basis = basis_of(job);
   const double now = job.statistics.render_seconds;
-  const double reached = job.curve.empty() ? 0.0 : job.curve.back().error.value;
   Json prices = Json::array();
   for (const double error : kPriced) {
     const auto total = seconds_to_error(job.curve, error, basis);
     prices.push_back({{"error", error},
-                      {"reached", !job.curve.empty() && reached <= error},
+                      {"reached", reached(job, error)},
                       {"seconds", total ? range_value(*total) : Json(nullptr)},
                       {"seconds_left", left_value(total, now)}});
   }

@@ -213,6 +213,9 @@ std::variant<Extension, Problem> parse_extension(std::string_view body, const Jo
   return parse_object<Extension>(body, [&](FieldReader& reader, Errors& errors, Extension& extension) {
     JobRequest request;
     read_stop(reader, limits, errors, request);
+    if (!request.stop.tile_samples.empty()) {
+      reader.error("stop", "invalid_value", "tile_samples are of a whole job, not of what is added to one");
+    }
     extension.stop = request.stop;
     if (const auto priority = reader.natural("priority", {1, as_bound(limits.max_priority)})) {
       extension.priority = static_cast<int>(*priority);

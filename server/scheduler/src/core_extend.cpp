@@ -8,7 +8,9 @@ namespace {
 
 /// Samples a pixel in the tile that has most of them.
 std::uint64_t most_samples(const JobSnapshot& job) {
-  if (!job.tile_samples.empty()) return *std::max_element(job.tile_samples.begin(), job.tile_samples.end());
+  for (const auto& tiles : {job.tile_samples, job.request.stop.tile_samples}) {
+    if (!tiles.empty()) return *std::max_element(tiles.begin(), tiles.end());
+  }
   return static_cast<std::uint64_t>(job.progress.samples_per_pixel);
 }
 
@@ -53,7 +55,6 @@ void Scheduler::Core::go_on_from(LiveJob& job, KeptFilm kept) {
   s.accuracy = std::move(kept.job.accuracy);
   job.seconds_before = s.statistics.render_seconds;
   job.film = std::move(kept.film);
-  job.film->drop_incomplete();  // rendered anew, so that all that is judged is what a whole job would judge
   job.picture = job.film->resolve();
   job.pixel_seconds = std::move(kept.pixel_seconds);
   job.plan->resume(kept.tile_samples);
@@ -61,8 +62,10 @@ void Scheduler::Core::go_on_from(LiveJob& job, KeptFilm kept) {
   job.new_samples = true;
 }
 
-/// Precondition: completed, so that every tile is at the border of a block.
+/// Precondition: completed, so that every tile is at the border of a block, or in its incomplete last one,
+/// which is rendered anew: all that is judged is then what a whole job would judge.
 void Scheduler::Core::keep_film(LiveJob& job, const JobImage& image) {
+  job.film->drop_incomplete();
   kept_.keep({job.snapshot, job.film, job.plan->tile_samples(), image.seconds});
 }
 

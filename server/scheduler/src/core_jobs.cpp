@@ -76,8 +76,10 @@ Result<std::optional<SubmittedJob>> Scheduler::Core::equal_result(const JobReque
   if (!earlier) return earlier.error();
   if (!earlier->has_value()) return std::optional<SubmittedJob>();
   auto snapshot = snapshot_of((*earlier)->id);
-  if (!snapshot) return snapshot.error();
-  if (snapshot->image_revision == 0) return std::optional<SubmittedJob>();
+  // Rendered anew where the record is damaged, and where another run may reach what time had cut off.
+  const bool usable = snapshot && snapshot->image_revision != 0 &&
+                      !(snapshot->request.stop.error && snapshot->done_by == DoneBy::kSeconds);
+  if (!usable) return std::optional<SubmittedJob>();
   reused_.add();
   return std::optional(SubmittedJob{.job = std::move(*snapshot), .created = false, .reused = true});
 }

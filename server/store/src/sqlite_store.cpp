@@ -28,7 +28,9 @@ Error scene_not_found(const std::string& id) {
   return {ErrorKind::kNotFound, "scene_not_found", "there is no such scene", id};
 }
 
+/// All of it or nothing: a store that was cut off between two steps could never be opened again.
 void check_schema(SQLite::Database& db) {
+  SQLite::Transaction whole(db);
   const int version = db.execAndGet("PRAGMA user_version").getInt();
   if (version > kSchemaVersion) {
     throw std::runtime_error("the store was written by a newer version of this program");
@@ -36,6 +38,7 @@ void check_schema(SQLite::Database& db) {
   if (version > 0) upgrade_tables(db, version);
   create_tables(db);
   db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+  whole.commit();
 }
 
 }  // namespace

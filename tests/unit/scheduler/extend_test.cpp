@@ -96,6 +96,16 @@ TEST_F(Extend, OfATimedJobIsWholeAgain) {
   EXPECT_EQ(layers(late.id), layers(rendered({.samples = most}, 8).id));
 }
 
+// The tile that has most counts, not the mean.
+TEST_F(Extend, OfTilesThatDifferNeedsMoreThanTheMost) {
+  StopRule tiles{.samples = 64};
+  tiles.tile_samples.assign(24, 16);
+  tiles.tile_samples[5] = 64;
+  const JobSnapshot early = rendered(tiles);
+  EXPECT_EQ(ask(early.id, {.samples = 48}).error().where, "/stop/samples");
+  EXPECT_EQ(layers(extended(early.id, {.samples = 80}).id), layers(rendered({.samples = 80}).id));
+}
+
 TEST_F(Extend, ToAnErrorDecidesWhereAWholeJobWouldHaveDecided) {
   const StopRule target{.samples = 100'000, .error = 0.04};
   const JobSnapshot whole = rendered(target);
