@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "raykiln/accel/kdtree_data.hpp"
+#include "raykiln/accel/kernels.hpp"
 #include "raykiln/math/float_bits.hpp"
 #include "support/mesh_generators.hpp"
 #include "support/thread_runner.hpp"
@@ -111,6 +112,15 @@ inline std::vector<render::Ray> hard_rays(const render::KdTree& tree, const Test
     rays.push_back(ray);
   }
   return rays;
+}
+
+/// Every walk that this processor can run.
+inline std::vector<render::Traversal> walks() {
+  std::vector<render::Traversal> result{render::Traversal::kScalar};
+  for (const auto kernel : {render::Traversal::kAvx2, render::Traversal::kAvx512}) {
+    if (render::is_available(kernel)) result.push_back(kernel);
+  }
+  return result;
 }
 
 inline bool same_bits(const render::Hit& a, const render::Hit& b) {

@@ -1,6 +1,8 @@
 #include <cassert>
 
 #include "brute_force.hpp"
+#include "lane_search.hpp"
+#include "raykiln/accel/kernels.hpp"
 #include "scalar_walk.hpp"
 
 namespace raykiln::render {
@@ -21,7 +23,7 @@ Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, c
   walk.run(kNoLimit, [&](std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t b = first; b < first + count; ++b) {
       ++counters.block_tests;
-      const bool opaque = test_block(sheared, blocks[b], [&](const Hit& hit) {
+      const bool opaque = test_block(sheared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
         found = tree.opaque(hit.id) ? Occlusion::kOpaque : Occlusion::kUndecided;
         return found == Occlusion::kOpaque;
       });
@@ -40,8 +42,14 @@ void any_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion
   TraversalCounters counts;
   counts.calls = 1;
   counts.rays = rays.size();
-  if (traversal == Traversal::kBruteForce) {
+  const Traversal chosen = resolve(traversal);
+  const LaneKernel kernel = rays.size() < kFewRays || tree.box.empty()
+                                ? nullptr
+                                : lane_kernel(chosen, LaneMode::kAny, tree.params.leaf_width);
+  if (chosen == Traversal::kBruteForce) {
     any_hits_brute_force(tree, rays, result.first(rays.size()), counts);
+  } else if (kernel != nullptr) {
+    any_hits_in_lanes(kernel, tree, rays, result.first(rays.size()), counts);
   } else {
     with_blocks(tree, [&](const auto& blocks) {
       for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -63,7 +63,7 @@ void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std
   std::fill(hits.begin(), hits.end(), Hit{});
   for_all_pairs(tree, rays, counters, [&](const LiveRay& ray, const LeafBlock<kWidth>& block) {
     Hit& best = hits[ray.index];
-    test_block(ray.sheared, block, [&](const Hit& hit) {
+    test_block(ray.sheared, block, counters.exact_tests, [&](const Hit& hit) {
       const bool counts = after.empty() || comes_after(hit, after[ray.index]);
       if (counts && comes_before(hit, best)) best = hit;
       return false;
@@ -77,7 +77,7 @@ void any_hits_brute_force(const KdTree& tree, std::span<const Ray> rays,
   for_all_pairs(tree, rays, counters, [&](const LiveRay& ray, const LeafBlock<kWidth>& block) {
     Occlusion& found = result[ray.index];
     if (found == Occlusion::kOpaque) return;
-    test_block(ray.sheared, block, [&](const Hit& hit) {
+    test_block(ray.sheared, block, counters.exact_tests, [&](const Hit& hit) {
       found = tree.opaque(hit.id) ? Occlusion::kOpaque : Occlusion::kUndecided;
       return found == Occlusion::kOpaque;
     });

@@ -1,6 +1,8 @@
 #include <cassert>
 
 #include "brute_force.hpp"
+#include "lane_search.hpp"
+#include "raykiln/accel/kernels.hpp"
 #include "scalar_walk.hpp"
 
 namespace raykiln::render {
@@ -20,7 +22,7 @@ Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, con
   walk.run(best.t, [&](std::uint32_t first, std::uint32_t count) {
     counters.block_tests += count;
     for (std::uint32_t b = first; b < first + count; ++b) {
-      test_block(sheared, blocks[b], [&](const Hit& hit) {
+      test_block(sheared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
         const bool counts = after == nullptr || comes_after(hit, *after);
         if (counts && comes_before(hit, best)) best = hit;
         return false;
@@ -40,8 +42,14 @@ void closest_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> 
   TraversalCounters counts;
   counts.calls = 1;
   counts.rays = rays.size();
-  if (traversal == Traversal::kBruteForce) {
+  const Traversal chosen = resolve(traversal);
+  const LaneKernel kernel = rays.size() < kFewRays || tree.box.empty()
+                                ? nullptr
+                                : lane_kernel(chosen, LaneMode::kClosest, tree.params.leaf_width);
+  if (chosen == Traversal::kBruteForce) {
     closest_hits_brute_force(tree, rays, hits.first(rays.size()), after, counts);
+  } else if (kernel != nullptr) {
+    closest_hits_in_lanes(kernel, tree, rays, hits.first(rays.size()), after, counts);
   } else {
     with_blocks(tree, [&](const auto& blocks) {
       for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -21,9 +21,6 @@
 
 namespace raykiln::render {
 
-inline constexpr float kAbsoluteSlack = 0x1p-43F;
-inline constexpr float kRelativeSlack = 6.0F * 0x1p-24F;
-
 class ScalarWalk {
  public:
   /// The ray has passed `prepare`.

@@ -20,12 +20,9 @@
 
 #include "raykiln/accel/kdtree.hpp"
 #include "raykiln/accel/kdtree_data.hpp"
+#include "walk_limits.hpp"
 
 namespace raykiln::render {
-
-/// Directions whose largest component is outside of these count as zero or infinite: no hit.
-inline constexpr float kMinDirection = 0x1p-100F;
-inline constexpr float kMaxDirection = 0x1p100F;
 
 /// A ray made ready for the test.
 struct ShearedRay {
@@ -35,18 +32,18 @@ struct ShearedRay {
   float t_min = 0.0F, t_max = 0.0F;
 };
 
-/// False when the ray can hit nothing: a number that is not finite, no direction, an empty interval.
-[[nodiscard]] inline bool prepare(const Ray& ray, ShearedRay& out) {
+/// The axis along which a ray moves most.
+[[nodiscard]] inline std::size_t main_axis(const Ray& ray) {
   const float ax = std::abs(ray.d.x);
   const float ay = std::abs(ray.d.y);
   const float az = std::abs(ray.d.z);
-  const std::size_t kz = ax >= ay && ax >= az ? 0U : (ay >= az ? 1U : 2U);
+  return ax >= ay && ax >= az ? 0U : (ay >= az ? 1U : 2U);
+}
+
+/// Makes a ray ready that is known to be usable.
+inline void shear_ray(const Ray& ray, ShearedRay& out) {
+  const std::size_t kz = main_axis(ray);
   const std::array<float, 3> d{ray.d.x, ray.d.y, ray.d.z};
-  const float longest = std::abs(d[kz]);
-  // Written so that NaN fails.
-  const bool finite = ax <= kMaxDirection && ay <= kMaxDirection && az <= kMaxDirection &&
-                      std::isfinite(ray.o.x) && std::isfinite(ray.o.y) && std::isfinite(ray.o.z);
-  if (!finite || !(longest >= kMinDirection) || !(ray.t_min <= ray.t_max)) return false;
   const auto dz = static_cast<double>(d[kz]);
   out.o = {ray.o.x, ray.o.y, ray.o.z};
   out.k = {(kz + 1) % 3, (kz + 2) % 3, kz};
@@ -55,6 +52,17 @@ struct ShearedRay {
   out.inv_dz = 1.0 / dz;
   out.t_min = ray.t_min;
   out.t_max = ray.t_max;
+}
+
+/// False when the ray can hit nothing: a number that is not finite, no direction, an empty interval.
+[[nodiscard]] inline bool prepare(const Ray& ray, ShearedRay& out) {
+  const float longest = std::abs(ray.d[static_cast<int>(main_axis(ray))]);
+  // Written so that NaN fails.
+  const bool finite = std::abs(ray.d.x) <= kMaxDirection && std::abs(ray.d.y) <= kMaxDirection &&
+                      std::abs(ray.d.z) <= kMaxDirection && std::isfinite(ray.o.x) &&
+                      std::isfinite(ray.o.y) && std::isfinite(ray.o.z);
+  if (!finite || !(longest >= kMinDirection) || !(ray.t_min <= ray.t_max)) return false;
+  shear_ray(ray, out);
   return true;
 }
 
@@ -94,8 +102,6 @@ inline float largest_magnitude(const std::array<float, 3>& a) {
 template <int W>
 inline void passes_filter(const ShearedRay& ray, const LeafBlock<W>& block,
                           std::array<std::int32_t, W>& pass) {
-  constexpr float kUnit = 0x1p-24F;
-  constexpr float kUnderflow = 0x1p-120F;  // products below 2^-126 lose more than u
   for (std::size_t lane = 0; lane < W; ++lane) {
     const auto s = shear<float>(ray, block, lane);
     const float u = s.x[2] * s.y[1] - s.y[2] * s.x[1];
@@ -105,7 +111,8 @@ inline void passes_filter(const ShearedRay& ray, const LeafBlock<W>& block,
     const float hy = largest_magnitude(s.y);
     const float h = hx > hy ? hx : hy;
     const float m = h + largest_magnitude(s.z);
-    const float e = 40.0F * kUnit * m * (h + 4.0F * kUnit * m) + kUnderflow;
+    // m (h + ...) first: where a product of corners overflows, so does this, and the lane passes.
+    const float e = (m * (h + kFilterCorner * m)) * kFilterEdge + kFilterUnderflow;
     const int negative = static_cast<int>(u < -e) | static_cast<int>(v < -e) |
                          static_cast<int>(w < -e);
     const int positive = static_cast<int>(u > e) | static_cast<int>(v > e) |
@@ -148,14 +155,17 @@ template <int W>
 }
 
 /// Calls accept(hit) for every triangle of the block that the ray meets, in lane order, until it
-/// returns true; says whether it did.
+/// returns true; says whether it did. Adds to `decided` what the filter let pass.
 template <int W, typename Accept>
-inline bool test_block(const ShearedRay& ray, const LeafBlock<W>& block, Accept&& accept) {
+inline bool test_block(const ShearedRay& ray, const LeafBlock<W>& block, std::uint64_t& decided,
+                       Accept&& accept) {
   std::array<std::int32_t, W> pass;
   passes_filter<W>(ray, block, pass);
   for (std::size_t lane = 0; lane < W; ++lane) {
+    if (pass[lane] == 0 || block.id[lane] == kNoHit) continue;
+    ++decided;
     Hit hit;
-    if (pass[lane] == 0 || block.id[lane] == kNoHit || !test_lane(ray, block, lane, hit)) continue;
+    if (!test_lane(ray, block, lane, hit)) continue;
     if (accept(hit)) return true;
   }
   return false;

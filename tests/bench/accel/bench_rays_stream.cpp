@@ -1,11 +1,13 @@
-// How many rays a second do closest_hits and any_hits do on one thread? Rays of a picture: primary
-// ones, two diffuse bounces, and shadow rays. A sample of every class is checked by brute force.
+// How many rays a second do closest_hits and any_hits do on one thread, with each kernel? Rays of a
+// picture: primary ones, two diffuse bounces, and shadow rays. The kernels take turns; all answers
+// must be the same bits, and a sample of every class is checked by brute force.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstring>
 #include <numbers>
 
 #include "bench_report.hpp"
+#include "raykiln/accel/kernels.hpp"
 #include "raykiln/math/frame.hpp"
 
 namespace {
@@ -26,6 +28,7 @@ using raykiln::test::TestRandom;
 
 struct Options {
   std::vector<std::string> families{"terrain", "soup", "sphere"};
+  std::vector<std::string> kernels{"scalar", "avx2", "avx512"};
   std::size_t triangles = 1'000'000;
   BuildParams params;
   std::uint32_t image = 512;
@@ -110,111 +113,150 @@ std::vector<Ray> shadow_rays(const std::vector<SurfacePoint>& points,
   return rays;
 }
 
-template <typename Query>
-double best_seconds(std::size_t n, const Options& options, Query&& query) {
-  double best = std::numeric_limits<double>::infinity();
-  for (int r = 0; r < options.repeat; ++r) {
-    const Stopwatch watch;
-    for (std::size_t i = 0; i < n; i += options.stream) query(i, std::min(options.stream, n - i));
-    best = std::min(best, watch.elapsed().cpu);
-  }
-  return best;
+/// What one kernel made of one class of rays.
+template <typename Answer>
+struct Run {
+  Traversal kernel;
+  double seconds = std::numeric_limits<double>::infinity();  ///< of the processor, best of all
+  TraversalCounters counters;
+  std::vector<Answer> answers;
+};
+
+void query(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits, Traversal traversal,
+           TraversalCounters* counters) {
+  raykiln::render::closest_hits(tree, rays, hits, {}, traversal, counters);
+}
+void query(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> found,
+           Traversal traversal, TraversalCounters* counters) {
+  raykiln::render::any_hits(tree, rays, found, traversal, counters);
 }
 
 class Bench {
  public:
   Bench(const Options& options, const KdTree& tree, std::string family)
-      : options_(options), tree_(tree), family_(std::move(family)) {}
-
-  std::vector<Hit> closest(const char* name, const std::vector<Ray>& rays) {
-    std::vector<Hit> hits(rays.size());
-    const std::span<const Ray> all(rays);
-    TraversalCounters counters;
-    const double seconds = best_seconds(rays.size(), options_, [&](std::size_t at, std::size_t n) {
-      raykiln::render::closest_hits(tree_, all.subspan(at, n), std::span(hits).subspan(at, n), {},
-                                    Traversal::kTree, &counters);
-    });
-    const auto sample = sample_of(rays);
-    std::vector<Hit> expected(sample.size());
-    std::vector<Hit> found(sample.size());
-    raykiln::render::closest_hits(tree_, sample, expected, {}, Traversal::kBruteForce);
-    raykiln::render::closest_hits(tree_, sample, found);
-    std::size_t wrong = 0;
-    for (std::size_t i = 0; i < sample.size(); ++i) {
-      wrong += std::memcmp(&expected[i], &found[i], sizeof(Hit)) != 0 ? 1U : 0U;
+      : options_(options), tree_(tree), family_(std::move(family)) {
+    for (const std::string& kernel : options.kernels) {
+      const auto traversal = raykiln::render::traversal_named(kernel);
+      if (traversal && raykiln::render::is_available(*traversal)) kernels_.push_back(*traversal);
     }
-    report(name, rays.size(), seconds, counters, sample.size(), wrong);
-    return hits;
   }
 
-  void any(const char* name, const std::vector<Ray>& rays) {
-    std::vector<Occlusion> result(rays.size());
-    const std::span<const Ray> all(rays);
-    TraversalCounters counters;
-    const double seconds = best_seconds(rays.size(), options_, [&](std::size_t at, std::size_t n) {
-      raykiln::render::any_hits(tree_, all.subspan(at, n), std::span(result).subspan(at, n),
-                                Traversal::kTree, &counters);
-    });
-    const auto sample = sample_of(rays);
-    std::vector<Occlusion> expected(sample.size());
-    std::vector<Occlusion> found(sample.size());
-    raykiln::render::any_hits(tree_, sample, expected, Traversal::kBruteForce);
-    raykiln::render::any_hits(tree_, sample, found);
-    std::size_t wrong = 0;
-    for (std::size_t i = 0; i < sample.size(); ++i) wrong += expected[i] != found[i] ? 1U : 0U;
-    report(name, rays.size(), seconds, counters, sample.size(), wrong);
+  /// Times every kernel on the rays, in turns; gives what the first found.
+  template <typename Answer>
+  std::vector<Answer> measure(const char* name, const std::vector<Ray>& rays) {
+    std::vector<Run<Answer>> runs;
+    for (const Traversal kernel : kernels_) runs.push_back({kernel, {}, {}, {}});
+    for (auto& run : runs) {
+      run.seconds = std::numeric_limits<double>::infinity();
+      run.answers.resize(rays.size());
+    }
+    for (int turn = 0; turn < options_.repeat; ++turn) {
+      for (auto& run : runs) time_once(rays, run);
+    }
+    const std::size_t wrong = count_wrong<Answer>(rays);
+    for (const auto& run : runs) {
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        different +=
+            std::memcmp(&run.answers[i], &runs[0].answers[i], sizeof(Answer)) != 0 ? 1U : 0U;
+      }
+      report(name, rays.size(), run.kernel, run.seconds, runs[0].seconds, run.counters,
+             wrong + different);
+    }
+    return runs.empty() ? std::vector<Answer>(rays.size()) : std::move(runs[0].answers);
   }
 
   std::vector<JsonObject> results;
   std::size_t wrong_in_all = 0;
 
  private:
-  [[nodiscard]] std::vector<Ray> sample_of(const std::vector<Ray>& rays) const {
+  template <typename Answer>
+  void time_once(const std::vector<Ray>& rays, Run<Answer>& run) const {
+    const std::span<const Ray> all(rays);
+    const Stopwatch watch;
+    for (std::size_t i = 0; i < rays.size(); i += options_.stream) {
+      const std::size_t n = std::min(options_.stream, rays.size() - i);
+      query(tree_, all.subspan(i, n), std::span(run.answers).subspan(i, n), run.kernel,
+            &run.counters);
+    }
+    run.seconds = std::min(run.seconds, watch.elapsed().cpu);
+  }
+
+  /// A sample of the rays, every kernel against brute force.
+  template <typename Answer>
+  [[nodiscard]] std::size_t count_wrong(const std::vector<Ray>& rays) const {
     std::vector<Ray> sample;
     TestRandom random(options_.seed + 99);
     for (std::size_t i = 0; i < options_.check && !rays.empty(); ++i) {
       sample.push_back(rays[random.below(static_cast<std::uint32_t>(rays.size()))]);
     }
-    return sample;
+    std::vector<Answer> expected(sample.size());
+    std::vector<Answer> found(sample.size());
+    query(tree_, sample, std::span(expected), Traversal::kBruteForce, nullptr);
+    std::size_t wrong = 0;
+    for (const Traversal kernel : kernels_) {
+      query(tree_, sample, std::span(found), kernel, nullptr);
+      for (std::size_t i = 0; i < sample.size(); ++i) {
+        wrong += std::memcmp(&expected[i], &found[i], sizeof(Answer)) != 0 ? 1U : 0U;
+      }
+    }
+    return wrong;
   }
 
-  void report(const char* name, std::size_t rays, double seconds, const TraversalCounters& counters,
-              std::size_t checked, std::size_t bad) {
+  void report(const char* rays_of, std::size_t rays, Traversal kernel, double seconds,
+              double first_seconds, const TraversalCounters& counters, std::size_t wrong) {
+    const std::string used(raykiln::render::name(kernel));
     const double mrays = static_cast<double>(rays) / seconds / 1e6;
     const auto n = static_cast<double>(std::max<std::uint64_t>(1, counters.rays));
-    const double nodes = static_cast<double>(counters.node_steps) / n;
-    const double leaves = static_cast<double>(counters.leaf_visits) / n;
-    const double blocks = static_cast<double>(counters.block_tests) / n;
-    std::printf("%-8s %-10s %8zu %8.3f %7.1f %7.2f %7.2f   %zu of %zu wrong\n", family_.c_str(),
-                name, rays, mrays, nodes, leaves, blocks, bad, checked);
+    const auto per_ray = [&](std::uint64_t count) { return static_cast<double>(count) / n; };
+    const std::uint64_t visits = counters.node_steps + counters.leaf_visits;
+    const double occupancy = counters.lane_slots == 0 ? 0.0
+                                                      : static_cast<double>(visits) /
+                                                            static_cast<double>(counters.lane_slots);
+    const double triangles = per_ray(counters.block_tests) * options_.params.leaf_width;
+    const std::size_t slash = family_.rfind('/');
+    const std::string shown = family_.substr(slash == std::string::npos ? 0 : slash + 1);
+    std::printf("%-12.12s %-10s %-7s %8zu %8.3f %6.2f %7.1f %7.2f %7.2f %7.1f %6.2f %5.2f %6zu\n",
+                shown.c_str(), rays_of, used.c_str(), rays, mrays, first_seconds / seconds,
+                per_ray(counters.node_steps), per_ray(counters.leaf_visits),
+                per_ray(counters.block_tests), triangles, per_ray(counters.exact_tests), occupancy,
+                wrong);
     std::fflush(stdout);
-    wrong_in_all += bad;
+    wrong_in_all += wrong;
     results.emplace_back();
     results.back()
         .add("family", family_)
-        .add("rays_of", std::string(name))
+        .add("rays_of", std::string(rays_of))
+        .add("kernel", used)
         .add("rays", static_cast<std::uint64_t>(rays))
         .add("mrays_per_cpu_second", mrays)
-        .add("node_steps_per_ray", nodes)
-        .add("leaf_visits_per_ray", leaves)
-        .add("blocks_per_ray", blocks)
-        .add("checked", static_cast<std::uint64_t>(checked))
-        .add("wrong", static_cast<std::uint64_t>(bad));
+        .add("rate_over_first_kernel", first_seconds / seconds)
+        .add("node_steps_per_ray", per_ray(counters.node_steps))
+        .add("leaf_visits_per_ray", per_ray(counters.leaf_visits))
+        .add("blocks_per_ray", per_ray(counters.block_tests))
+        .add("triangles_per_ray", triangles)
+        .add("exact_tests_per_ray", per_ray(counters.exact_tests))
+        .add("lane_occupancy", occupancy)
+        .add("checked", static_cast<std::uint64_t>(options_.check))
+        .add("wrong", static_cast<std::uint64_t>(wrong));
   }
 
   const Options& options_;
   const KdTree& tree_;
   std::string family_;
+  std::vector<Traversal> kernels_;
 };
 
 int run(const Options& options) {
-  std::printf("mesh     rays of        rays   Mray/s nodes/r leaves/r blocks/r   brute force\n");
+  std::printf(
+      "mesh         rays of    kernel      rays   Mray/s  ratio nodes/r leaf/r  block/r  tria/r "
+      "exact/r lanes  wrong\n");
   std::vector<JsonObject> results;
   std::size_t wrong = 0;
   for (const std::string& family : options.families) {
     const auto mesh = raykiln::bench::make_mesh(family, options.triangles, options.seed);
     if (!mesh) {
-      std::fprintf(stderr, "unknown family %s; there are %s\n", family.c_str(),
+      std::fprintf(stderr, "no mesh %s; there are %s\n", family.c_str(),
                    raykiln::bench::kFamilies);
       return 2;
     }
@@ -222,11 +264,11 @@ int run(const Options& options) {
     const auto tree = raykiln::render::build_kdtree(mesh->view(), options.params, runner);
     Bench bench(options, *tree, family);
     auto rays = primary_rays(raykiln::render::bounds(*tree), options);
-    auto points = surface_points(*mesh, rays, bench.closest("primary", rays));
-    bench.any("shadow", shadow_rays(points, raykiln::render::bounds(*tree)));
+    auto points = surface_points(*mesh, rays, bench.measure<Hit>("primary", rays));
+    bench.measure<Occlusion>("shadow", shadow_rays(points, raykiln::render::bounds(*tree)));
     for (const char* name : {"diffuse 1", "diffuse 2"}) {
       rays = cosine_bounces(points, options.seed + 1);
-      points = surface_points(*mesh, rays, bench.closest(name, rays));
+      points = surface_points(*mesh, rays, bench.measure<Hit>(name, rays));
     }
     results.insert(results.end(), bench.results.begin(), bench.results.end());
     wrong += bench.wrong_in_all;
@@ -253,6 +295,9 @@ int main(int argc, char** argv) {
       "3: a checked ray differed.");
   app.add_option("--families", options.families, std::string("meshes: ") + raykiln::bench::kFamilies)
       ->delimiter(',');
+  app.add_option("--kernels", options.kernels, "to compare; ratios are against the first one")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"scalar", "avx2", "avx512"}));
   app.add_option("--triangles", options.triangles, "of each mesh, about")
       ->check(CLI::Range(std::size_t{2}, std::size_t{100'000'000}));
   app.add_option("--leaf-width", options.params.leaf_width, "8 or 16")->check(CLI::IsMember({8, 16}));

@@ -1,4 +1,4 @@
-// The tree finds what brute force finds: t, id, u and v bit for bit.
+// Every walk through the tree finds what brute force finds: t, id, u and v bit for bit.
 #include "support/accel_testing.hpp"
 
 namespace raykiln::test {
@@ -84,7 +84,10 @@ TEST_P(BruteForce, ClosestHitsAreEqualBitForBit) {
     const auto rays = hard_rays(*tree, mesh, 4800, seed);
     const auto expected = closest(*tree, rays, Traversal::kBruteForce);
     EXPECT_GT(count_hits(expected), rays.size() / 20) << "the rays must meet something";
-    EXPECT_EQ(count_differences(rays, closest(*tree, rays), expected), 0U) << "seed " << seed;
+    for (const Traversal walk : walks()) {
+      EXPECT_EQ(count_differences(rays, closest(*tree, rays, walk), expected), 0U)
+          << render::name(walk) << " seed " << seed;
+    }
   }
 }
 
@@ -96,9 +99,11 @@ TEST_P(BruteForce, GoingOnAfterAHitListsTheSameHits) {
   for (int layer = 0; layer < 6; ++layer) {
     std::vector<Hit> walk(rays.size());
     std::vector<Hit> all(rays.size());
-    render::closest_hits(*tree, rays, walk, after);
     render::closest_hits(*tree, rays, all, after, Traversal::kBruteForce);
-    ASSERT_EQ(count_differences(rays, walk, all), 0U) << "layer " << layer;
+    for (const Traversal kernel : walks()) {
+      render::closest_hits(*tree, rays, walk, after, kernel);
+      ASSERT_EQ(count_differences(rays, walk, all), 0U) << render::name(kernel) << " layer " << layer;
+    }
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (all[i].id == render::kNoHit) continue;
       ASSERT_TRUE(all[i].t > after[i].t || (all[i].t == after[i].t && all[i].id > after[i].id));
@@ -117,9 +122,11 @@ TEST_P(BruteForce, AnyHitsAgreeWithAndWithoutOpaqueTriangles) {
   const auto rays = hard_rays(*tree, mesh, 4800, 80);
   std::vector<Occlusion> walk(rays.size());
   std::vector<Occlusion> all(rays.size());
-  render::any_hits(*tree, rays, walk);
   render::any_hits(*tree, rays, all, Traversal::kBruteForce);
-  EXPECT_EQ(walk, all);
+  for (const Traversal kernel : walks()) {
+    render::any_hits(*tree, rays, walk, kernel);
+    EXPECT_EQ(walk, all) << render::name(kernel);
+  }
   const auto hits = closest(*tree, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(all[i] == Occlusion::kNone, hits[i].id == render::kNoHit);

@@ -80,6 +80,9 @@ struct HitOrder {
 struct TraversalCounters {
   std::uint64_t calls = 0, rays = 0, node_steps = 0, leaf_visits = 0, block_tests = 0;
   std::uint64_t unusable_rays = 0;  ///< not finite, no direction, empty interval: can hit nothing
+  // What follows depends on the kernel, all above on tree and rays alone.
+  std::uint64_t exact_tests = 0;  ///< triangles decided in double
+  std::uint64_t lane_slots = 0;   ///< lanes times their steps; of these node_steps + leaf_visits had a ray
 
   TraversalCounters& operator+=(const TraversalCounters& other) {
     calls += other.calls;
@@ -88,6 +91,8 @@ struct TraversalCounters {
     node_steps += other.node_steps;
     leaf_visits += other.leaf_visits;
     block_tests += other.block_tests;
+    exact_tests += other.exact_tests;
+    lane_slots += other.lane_slots;
     return *this;
   }
 };
@@ -104,7 +109,11 @@ class KdTree;  // see kdtree_data.hpp for the arrays; most callers need only the
 [[nodiscard]] const BuildStats& build_stats(const KdTree& tree);
 [[nodiscard]] Bounds3f bounds(const KdTree& tree);
 
-enum class Traversal { kTree, kBruteForce };
+/// How to find hits; what is found does not depend on it. kTree takes the fastest walk that the
+/// processor can run (kernels.hpp), kScalar one ray at a time: the reference for the kernels below
+/// it, whose results and counters are the same bit for bit. A kernel that the processor cannot run
+/// gives way to kScalar.
+enum class Traversal { kTree, kBruteForce, kScalar, kAvx2, kAvx512 };
 
 /// For every ray the hit with the lowest (t, id); t, id, u, v do not depend on the tree, its
 /// parameters or the traversal. Feed 1024 rays or more a call. `after` is empty or one a ray.

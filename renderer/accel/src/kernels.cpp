@@ -1,0 +1,82 @@
+#include "raykiln/accel/kernels.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <utility>
+
+namespace raykiln::render {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Traversal>, 5> kNames{{
+    {"tree", Traversal::kTree},
+    {"brute", Traversal::kBruteForce},
+    {"scalar", Traversal::kScalar},
+    {"avx2", Traversal::kAvx2},
+    {"avx512", Traversal::kAvx512},
+}};
+
+// What the units of the kernels are compiled for; the compiler's functions ask the operating system
+// too whether it keeps the registers.
+#ifdef RAYKILN_X86_KERNELS
+bool has_avx2() {
+  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 &&
+         __builtin_cpu_supports("bmi2") != 0 && __builtin_cpu_supports("popcnt") != 0;
+}
+bool has_avx512() {
+  return has_avx2() && __builtin_cpu_supports("avx512f") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+         __builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("fma") != 0;
+}
+#else
+bool has_avx2() { return false; }
+bool has_avx512() { return false; }
+#endif
+
+Traversal choose() {
+  if (const char* wanted = std::getenv(kKernelVariable)) {
+    const auto traversal = traversal_named(wanted);
+    if (traversal && *traversal != Traversal::kTree && *traversal != Traversal::kBruteForce &&
+        is_available(*traversal)) {
+      return *traversal;
+    }
+  }
+  if (has_avx512()) return Traversal::kAvx512;
+  return has_avx2() ? Traversal::kAvx2 : Traversal::kScalar;
+}
+
+}  // namespace
+
+bool is_available(Traversal traversal) {
+  switch (traversal) {
+    case Traversal::kAvx2: return has_avx2();
+    case Traversal::kAvx512: return has_avx512();
+    case Traversal::kTree:
+    case Traversal::kBruteForce:
+    case Traversal::kScalar: break;
+  }
+  return true;
+}
+
+Traversal resolve(Traversal wanted) {
+  if (wanted == Traversal::kTree) {
+    static const Traversal chosen = choose();
+    return chosen;
+  }
+  return is_available(wanted) ? wanted : Traversal::kScalar;
+}
+
+std::string_view name(Traversal traversal) {
+  for (const auto& [text, value] : kNames) {
+    if (value == traversal) return text;
+  }
+  return "";
+}
+
+std::optional<Traversal> traversal_named(std::string_view name) {
+  for (const auto& [text, value] : kNames) {
+    if (text == name) return value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,50 @@
+// What passes between the code for every processor and the lane kernels, each of which is compiled
+// for one instruction set. Plain data and pointers only: an inline function here would be compiled
+// once with AVX and once without, and the linker would keep either.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace raykiln::render {
+
+/// The id of no triangle.
+constexpr std::uint32_t kLaneNoHit = 0xFFFFFFFFU;
+/// Entries of a walk's stack, one of them for a store that is not kept.
+constexpr std::uint32_t kLaneStack = 66;
+
+/// Best hit so far of a ray: cells behind t need no visit, triangle `id` need not be decided again.
+struct LaneBest {
+  float t;
+  std::uint32_t id;
+};
+
+struct LaneCounts {
+  std::uint64_t node_steps, leaf_visits, block_tests, unusable_rays, lane_slots;
+};
+
+/// Rays to be walked through one tree. The kernel finds leaf blocks and the lanes in them that may
+/// be hit; `decide` (compiled for every processor, in double) has the last word and keeps the hit.
+struct LaneQuery {
+  const void* nodes;   ///< KdNode
+  const float* blocks; ///< LeafBlock<leaf_width>
+  const float* rays;   ///< Ray: 8 floats each
+  std::size_t ray_count;
+  float box_lo[3], box_hi[3];
+
+  /// Called for `lanes` (a bit each) of `block` that passed the filter. Closest-hit: the best hit
+  /// from now on. Any-hit: an id other than kLaneNoHit ends the ray.
+  LaneBest (*decide)(void* context, std::size_t ray, std::uint32_t block, std::uint32_t lanes);
+  void* context;
+};
+
+/// A kernel for one leaf width and kind of query.
+using LaneKernel = void (*)(const LaneQuery& query, LaneCounts& counts);
+
+enum class LaneMode : std::uint8_t { kClosest, kAny };
+
+/// nullptr where this build has no such kernel. Whether the processor can run it is another matter.
+LaneKernel avx2_kernel(LaneMode mode, int leaf_width);
+LaneKernel avx512_kernel(LaneMode mode, int leaf_width);
+
+}  // namespace raykiln::render

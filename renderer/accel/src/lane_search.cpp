@@ -1,0 +1,118 @@
+#include "lane_search.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "triangle_test.hpp"
+
+namespace raykiln::render {
+namespace {
+
+static_assert(kLaneStack >= kMaxKdDepth + 2 && kLaneNoHit == kNoHit);
+
+template <int W>
+struct Closest {
+  const LeafBlock<W>* blocks;
+  std::span<const Ray> rays;
+  std::span<Hit> hits;
+  std::span<const HitOrder> after;
+  std::uint64_t decided = 0;
+
+  LaneBest decide(std::size_t ray, std::uint32_t block, std::uint32_t lanes) {
+    Hit& best = hits[ray];
+    ShearedRay sheared;
+    shear_ray(rays[ray], sheared);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      ++decided;
+      Hit hit;
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+      if (!test_lane(sheared, blocks[block], lane, hit)) continue;
+      const bool counts = after.empty() || comes_after(hit, after[ray]);
+      if (counts && comes_before(hit, best)) best = hit;
+    }
+    return {best.t, best.id};
+  }
+};
+
+template <int W>
+struct Any {
+  const LeafBlock<W>* blocks;
+  std::span<const Ray> rays;
+  std::span<Occlusion> result;
+  const KdTree& tree;
+  std::uint64_t decided = 0;
+
+  LaneBest decide(std::size_t ray, std::uint32_t block, std::uint32_t lanes) {
+    ShearedRay sheared;
+    shear_ray(rays[ray], sheared);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      ++decided;
+      Hit hit;
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+      if (!test_lane(sheared, blocks[block], lane, hit)) continue;
+      const bool opaque = tree.opaque(hit.id);
+      result[ray] = opaque ? Occlusion::kOpaque : Occlusion::kUndecided;
+      if (opaque) return {hit.t, hit.id};
+    }
+    return {0.0F, kNoHit};
+  }
+};
+
+template <typename Search>
+void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounters& counters) {
+  static_assert(sizeof(Ray) == 8 * sizeof(float));
+  LaneQuery query{};
+  query.nodes = tree.nodes.data();
+  query.blocks = reinterpret_cast<const float*>(search.blocks);
+  query.rays = reinterpret_cast<const float*>(search.rays.data());
+  query.ray_count = search.rays.size();
+  for (int k = 0; k < 3; ++k) {
+    query.box_lo[k] = tree.box.lo[k];
+    query.box_hi[k] = tree.box.hi[k];
+  }
+  query.context = &search;
+  query.decide = [](void* context, std::size_t ray, std::uint32_t block, std::uint32_t lanes) {
+    return static_cast<Search*>(context)->decide(ray, block, lanes);
+  };
+  LaneCounts counts{};
+  kernel(query, counts);
+  counters.node_steps += counts.node_steps;
+  counters.leaf_visits += counts.leaf_visits;
+  counters.block_tests += counts.block_tests;
+  counters.unusable_rays += counts.unusable_rays;
+  counters.lane_slots += counts.lane_slots;
+  counters.exact_tests += search.decided;
+}
+
+}  // namespace
+
+LaneKernel lane_kernel(Traversal traversal, LaneMode mode, int leaf_width) {
+#ifdef RAYKILN_X86_KERNELS
+  if (traversal == Traversal::kAvx2) return avx2_kernel(mode, leaf_width);
+  if (traversal == Traversal::kAvx512) return avx512_kernel(mode, leaf_width);
+#else
+  (void)traversal, (void)mode, (void)leaf_width;
+#endif
+  return nullptr;
+}
+
+void closest_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
+                           std::span<Hit> hits, std::span<const HitOrder> after,
+                           TraversalCounters& counters) {
+  std::fill(hits.begin(), hits.end(), Hit{});
+  with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
+    Closest<W> search{blocks.data(), rays, hits, after};
+    run(kernel, tree, search, counters);
+  });
+}
+
+void any_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
+                       std::span<Occlusion> result, TraversalCounters& counters) {
+  std::fill(result.begin(), result.end(), Occlusion::kNone);
+  with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
+    Any<W> search{blocks.data(), rays, result, tree};
+    run(kernel, tree, search, counters);
+  });
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,111 @@
+// Sixteen lanes in AVX-512 registers. For units with their own instruction set only: everything has
+// internal linkage.
+#pragma once
+
+#include <immintrin.h>
+
+#include <cstdint>
+
+namespace raykiln::render {
+namespace {
+
+struct Lanes16 {
+  static constexpr std::uint32_t kWidth = 16;
+  using F = __m512;
+  using I = __m512i;
+  using M = __mmask16;
+
+  static F load(const float* p) { return _mm512_load_ps(p); }
+  static I load(const std::uint32_t* p) { return _mm512_load_si512(p); }
+  static void store(float* p, F v) { _mm512_store_ps(p, v); }
+  static void store(std::uint32_t* p, I v) { _mm512_store_si512(p, v); }
+  static F set1(float v) { return _mm512_set1_ps(v); }
+  static I set1(std::uint32_t v) { return _mm512_set1_epi32(static_cast<int>(v)); }
+
+  static F add(F a, F b) { return _mm512_add_ps(a, b); }
+  static F sub(F a, F b) { return _mm512_sub_ps(a, b); }
+  static F mul(F a, F b) { return _mm512_mul_ps(a, b); }
+  static F div(F a, F b) { return _mm512_div_ps(a, b); }
+  /// a < b ? a : b, so b if one is NaN.
+  static F min(F a, F b) { return _mm512_min_ps(a, b); }
+  /// a > b ? a : b, so b if one is NaN.
+  static F max(F a, F b) { return _mm512_max_ps(a, b); }
+  static F abs(F a) { return _mm512_abs_ps(a); }
+  /// a with its sign turned where b is negative.
+  static F turn_sign(F a, F b) { return _mm512_xor_ps(a, _mm512_and_ps(b, set1(-0.0F))); }
+
+  static M lt(F a, F b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+  static M le(F a, F b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+  static M not_gt(F a, F b) { return _mm512_cmp_ps_mask(a, b, _CMP_NGT_UQ); }
+  static M eq(I a, I b) { return _mm512_cmpeq_epi32_mask(a, b); }
+  static M both(M a, M b) { return _kand_mask16(a, b); }
+  static M either(M a, M b) { return _kor_mask16(a, b); }
+  static M not_but(M a, M b) { return _kandn_mask16(a, b); }  ///< b without a
+  static std::uint32_t bits(M m) { return _cvtmask16_u32(m); }
+
+  /// m ? b : a
+  static F blend(M m, F a, F b) { return _mm512_mask_blend_ps(m, a, b); }
+  static I blend(M m, I a, I b) { return _mm512_mask_blend_epi32(m, a, b); }
+  static I add(I a, I b) { return _mm512_add_epi32(a, b); }
+  static I add_where(M m, I a, I b) { return _mm512_mask_add_epi32(a, m, a, b); }
+  static I both(I a, I b) { return _mm512_and_si512(a, b); }
+  static I flip(I a, I b) { return _mm512_xor_si512(a, b); }
+  template <int kBits>
+  static I shift_right(I a) {
+    return _mm512_srli_epi32(a, kBits);
+  }
+  static I as_int(F a) { return _mm512_castps_si512(a); }
+  static F as_float(I a) { return _mm512_castsi512_ps(a); }
+
+  /// x, y or z by an axis of 0, 1 or 2 in each lane.
+  static F select(I axis, F x, F y, F z) {
+    const F xz = blend(eq(axis, _mm512_setzero_si512()), z, x);
+    return blend(eq(axis, set1(1U)), xz, y);
+  }
+
+  /// The two words of nodes[index[lane]].
+  static void load_nodes(const void* nodes, const std::uint32_t* index, I& first, I& second) {
+    const auto eight = [&](const std::uint32_t* at) {
+      const __m256i i = _mm256_load_si256(reinterpret_cast<const __m256i*>(at));
+      return _mm512_i32gather_epi64(i, nodes, 8);
+    };
+    const __m512i lo = eight(index);
+    const __m512i hi = eight(index + 8);
+    const __m512i even =
+        _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    first = _mm512_permutex2var_epi32(lo, even, hi);
+    second = _mm512_permutex2var_epi32(lo, add(even, set1(1U)), hi);
+  }
+
+  static void prefetch_nodes(const void* nodes, const std::uint32_t* index) {
+    for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+      __builtin_prefetch(static_cast<const double*>(nodes) + index[lane]);
+    }
+  }
+
+  /// (a, b, c) of every lane as 16 bytes at base + lane * stride + offset[lane].
+  static void store_entries(unsigned char* base, std::size_t stride, const std::uint32_t* offset,
+                            I a, F b, F c) {
+    const __m512 a_f = as_float(a);
+    const __m512 ab_lo = _mm512_unpacklo_ps(a_f, b);
+    const __m512 ab_hi = _mm512_unpackhi_ps(a_f, b);
+    const __m512 c_lo = _mm512_unpacklo_ps(c, c);
+    const __m512 c_hi = _mm512_unpackhi_ps(c, c);
+    const auto put = [&](std::uint32_t lane, __m512 four) {
+      const auto at = [&](std::uint32_t l) {
+        return reinterpret_cast<float*>(base + l * stride + offset[l]);
+      };
+      _mm_store_ps(at(lane), _mm512_castps512_ps128(four));
+      _mm_store_ps(at(lane + 4), _mm512_extractf32x4_ps(four, 1));
+      _mm_store_ps(at(lane + 8), _mm512_extractf32x4_ps(four, 2));
+      _mm_store_ps(at(lane + 12), _mm512_extractf32x4_ps(four, 3));
+    };
+    put(0, _mm512_shuffle_ps(ab_lo, c_lo, 0x44));
+    put(1, _mm512_shuffle_ps(ab_lo, c_lo, 0xEE));
+    put(2, _mm512_shuffle_ps(ab_hi, c_hi, 0x44));
+    put(3, _mm512_shuffle_ps(ab_hi, c_hi, 0xEE));
+  }
+};
+
+}  // namespace
+}  // namespace raykiln::render

@@ -1,0 +1,171 @@
+// The lane kernels are the scalar walk: the same hits and the same counts, whatever else is in the
+// stream, at every scale a float can have.
+#include "support/accel_testing.hpp"
+
+namespace raykiln::test {
+namespace {
+
+using render::Hit;
+using render::Occlusion;
+using render::Ray;
+using render::Traversal;
+using render::TraversalCounters;
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+std::vector<TestMesh> meshes() {
+  TestMesh doubled = coplanar_grid(6);
+  doubled.append(soup(200, 5, 4.0F));
+  doubled.append(doubled);
+  return {soup(600, 1, 2.0F), terrain(16), slivers(150), hair(20, 8), doubled};
+}
+
+// What all kernels must share.
+void expect_same_counts(const TraversalCounters& a, const TraversalCounters& b) {
+  EXPECT_EQ(a.rays, b.rays);
+  EXPECT_EQ(a.unusable_rays, b.unusable_rays);
+  EXPECT_EQ(a.node_steps, b.node_steps);
+  EXPECT_EQ(a.leaf_visits, b.leaf_visits);
+  EXPECT_EQ(a.block_tests, b.block_tests);
+}
+
+struct Answers {
+  std::vector<Hit> hits;
+  std::vector<Occlusion> occlusion;
+  TraversalCounters closest, any;
+};
+
+Answers ask(const render::KdTree& tree, std::span<const Ray> rays, Traversal walk) {
+  Answers answers;
+  answers.hits.resize(rays.size());
+  answers.occlusion.resize(rays.size());
+  render::closest_hits(tree, rays, answers.hits, {}, walk, &answers.closest);
+  render::any_hits(tree, rays, answers.occlusion, walk, &answers.any);
+  return answers;
+}
+
+void expect_same(const render::KdTree& tree, const std::vector<Ray>& rays) {
+  const Answers scalar = ask(tree, rays, Traversal::kScalar);
+  for (const Traversal walk : walks()) {
+    SCOPED_TRACE(render::name(walk));
+    const Answers other = ask(tree, rays, walk);
+    EXPECT_EQ(count_differences(rays, other.hits, scalar.hits), 0U);
+    EXPECT_EQ(other.occlusion, scalar.occlusion);
+    expect_same_counts(other.closest, scalar.closest);
+    expect_same_counts(other.any, scalar.any);
+  }
+}
+
+TEST(Kernels, CountWhatTheScalarWalkCounts) {
+  for (const TestMesh& mesh : meshes()) {
+    for (const int width : {8, 16}) {
+      for (const double k_i : {0.25, 4.0}) {
+        render::BuildParams params;
+        params.leaf_width = width;
+        params.k_i = k_i;
+        const auto tree = build(mesh, params);
+        expect_same(*tree, hard_rays(*tree, mesh, 3000, 40));
+      }
+    }
+  }
+}
+
+TEST(Kernels, AnyLengthOfStream) {
+  const TestMesh mesh = soup(600, 2, 2.0F);
+  const auto tree = build(mesh);
+  const auto rays = hard_rays(*tree, mesh, 160, 41);
+  for (std::size_t n = 0; n <= rays.size(); ++n) {
+    expect_same(*tree, {rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(n)});
+  }
+}
+
+TEST(Kernels, EveryScale) {
+  for (const TestMesh& mesh : meshes()) {
+    const auto rays = hard_rays(*build(mesh), mesh, 480, 42);
+    for (const int exponent : {-100, -75, -63, -40, -12, 12, 40, 61, 62, 63, 64, 65, 75, 100}) {
+      const float scale = std::ldexp(1.0F, exponent);
+      TestMesh scaled = mesh;
+      for (Vec3f& p : scaled.positions) p *= scale;
+      const auto tree = build(scaled);
+      std::vector<Ray> scaled_rays = rays;
+      for (Ray& ray : scaled_rays) {
+        ray.o *= scale;
+        ray.t_min *= scale;
+        ray.t_max *= scale;
+      }
+      SCOPED_TRACE(exponent);
+      expect_same(*tree, scaled_rays);
+      const auto expected = closest(*tree, scaled_rays, Traversal::kBruteForce);
+      for (const Traversal walk : walks()) {
+        EXPECT_EQ(count_differences(scaled_rays, closest(*tree, scaled_rays, walk), expected), 0U);
+      }
+    }
+  }
+}
+
+TEST(Kernels, RaysThatAreNotRaysAmongOthers) {
+  const TestMesh mesh = soup(600, 3, 2.0F);
+  const auto tree = build(mesh);
+  auto rays = hard_rays(*tree, mesh, 4000, 43);
+  TestRandom random(44);
+  const std::vector<float> bad{kNan, kInf, -kInf, 0.0F, -0.0F, 1e-40F, 1e35F, -1e35F};
+  for (Ray& ray : rays) {
+    const float value = bad[random.below(static_cast<std::uint32_t>(bad.size()))];
+    switch (random.below(8)) {
+      case 0: ray.o[static_cast<int>(random.below(3))] = value; break;
+      case 1: ray.d[static_cast<int>(random.below(3))] = value; break;
+      case 2: ray.t_min = value; break;
+      case 3: ray.t_max = value; break;
+      case 4: ray.d = Vec3f(value); break;
+      default: break;
+    }
+  }
+  expect_same(*tree, rays);
+  const auto expected = closest(*tree, rays, Traversal::kBruteForce);
+  for (const Traversal walk : walks()) {
+    EXPECT_EQ(count_differences(rays, closest(*tree, rays, walk), expected), 0U);
+  }
+}
+
+// An interval of one point is met where the hit lies and nowhere beside.
+TEST(Kernels, IntervalsOfOnePoint) {
+  for (const TestMesh& mesh : meshes()) {
+    const auto tree = build(mesh);
+    auto rays = hard_rays(*tree, mesh, 2000, 45);
+    const auto hits = closest(*tree, rays, Traversal::kScalar);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits[i].id == render::kNoHit) continue;
+      rays[i].t_min = rays[i].t_max = i % 4 == 0 ? render::next_up(hits[i].t) : hits[i].t;
+    }
+    expect_same(*tree, rays);
+    const auto found = closest(*tree, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (i % 4 == 0 || hits[i].id == render::kNoHit) continue;
+      ASSERT_TRUE(same_bits(found[i], hits[i])) << "ray " << i;
+    }
+  }
+}
+
+TEST(Kernels, ATreeOfNothing) {
+  const auto tree = build(TestMesh{});
+  expect_same(*tree, std::vector<Ray>(100));
+}
+
+TEST(Kernels, HaveNamesAndGiveWay) {
+  for (const Traversal walk : walks()) {
+    EXPECT_EQ(render::traversal_named(render::name(walk)), walk);
+    EXPECT_EQ(render::resolve(walk), walk);
+  }
+  EXPECT_EQ(render::resolve(Traversal::kBruteForce), Traversal::kBruteForce);
+  EXPECT_NE(render::resolve(Traversal::kTree), Traversal::kTree);
+  EXPECT_TRUE(render::is_available(render::resolve(Traversal::kTree)));
+  EXPECT_EQ(render::traversal_named("sse"), std::nullopt);
+  for (const Traversal kernel : {Traversal::kAvx2, Traversal::kAvx512}) {
+    const bool runs = render::is_available(kernel);
+    EXPECT_EQ(render::resolve(kernel), runs ? kernel : Traversal::kScalar);
+  }
+}
+
+}  // namespace
+}  // namespace raykiln::test
