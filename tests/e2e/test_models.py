@@ -32,6 +32,7 @@ def companions(path: Path) -> dict:
         text = files[path.name].decode("utf-8", "replace")
         names = [line.split(None, 1)[1].strip() for line in text.splitlines()
                  if line.startswith("mtllib ")]
+        names += [name for library in names for name in mtl_pictures(path.parent / library)]
     else:
         names = uris(files[path.name])
     for name in names:
@@ -41,12 +42,20 @@ def companions(path: Path) -> dict:
     return files
 
 
+def mtl_pictures(library: Path) -> list:
+    text = library.read_text("utf-8", "replace") if library.is_file() else ""
+    return [line.split(None, 1)[1].strip().replace("\\", "/").removeprefix("./")
+            for line in text.splitlines() if line.strip().startswith(("map_Kd ", "map_Ke "))]
+
+
 def uris(document: bytes) -> list:
     try:
-        buffers = json.loads(document).get("buffers", [])
+        root = json.loads(document)
+        lists = [root.get("buffers", []), root.get("images", [])]
     except (ValueError, AttributeError):
         return []
-    entries = buffers.values() if isinstance(buffers, dict) else buffers
+    entries = [entry for each in lists
+               for entry in (each.values() if isinstance(each, dict) else each)]
     found = [entry.get("uri") for entry in entries if isinstance(entry, dict)]
     return [unquote(uri) for uri in found if isinstance(uri, str) and not uri.startswith("data:")]
 
@@ -86,6 +95,8 @@ def test_spider_has_its_materials(api):
     scene = api.upload_files(companions(MODELS / "OBJ" / "spider.obj")).json()
     dropped = sum(w["count"] for w in scene["warnings"] if w["code"] == "zero_area_triangles")
     assert scene["triangles"] + dropped == 1368 and scene["materials"] >= 4
-    places = {w["code"]: w["where"] for w in scene["warnings"]}
-    assert places["ignored_texture"] == "spider.mtl:10", places
-    assert any("texture" in warning["code"] for warning in scene["warnings"]), scene["warnings"]
+    assert not any("texture" in warning["code"] for warning in scene["warnings"]), scene["warnings"]
+    less = companions(MODELS / "OBJ" / "spider.obj")
+    del less["SpiderTex.jpg"]
+    body = problem(api.upload_files(less, expect=(422,)), 422, "scene_invalid")
+    assert "SpiderTex.jpg" in body["detail"] and body["where"].startswith("spider.mtl:"), body

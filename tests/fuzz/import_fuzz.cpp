@@ -127,6 +127,9 @@ const std::string kObj =
 const std::string kMtl =
     "newmtl a\nKa 0 0 0\nKd 0.5 0.25 0.125\nKs 0.1 0.1 0.1\nNs 100\nillum 2\nmap_Kd x.png\n"
     "newmtl b c\nKd 0.5\nKe 1 2 3\nd 0.5\nNi 1.5\nTr 0.5\nTf 1 1 1\nillum 7\n";
+/// One grey pixel; told by its bytes, whatever it is called.
+const std::string kPicture =
+    "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x80";
 const std::string kSidecar = R"({"scene": "a.obj", "scale": 2, "camera": {"eye": [0, 0, 5],
   "look_at": [0, 0, 0], "up": [0, 1, 0], "fov_deg": 40}, "point_lights": [{"position": [0, 2, 0],
   "intensity": [1, 2, 3]}], "background": [0, 0, 0.1], "materials": {"a": {"diffuse": [1, 0, 0],
@@ -162,13 +165,13 @@ GltfBuilder full_gltf() {
 }
 
 TEST(Fuzz, Obj) {
-  fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}}, "a.obj", {kObj, kMtl, kSidecar});
+  fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}, {"x.png", kPicture}}, "a.obj", {kObj, kMtl, kSidecar});
 }
 TEST(Fuzz, Mtl) {
-  fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}}, "m.mtl", {kMtl, kObj});
+  fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}, {"x.png", kPicture}}, "m.mtl", {kMtl, kObj});
 }
 TEST(Fuzz, Sidecar) {
-  fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}, {"raykiln.json", kSidecar}}, "raykiln.json",
+  fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}, {"x.png", kPicture}, {"raykiln.json", kSidecar}}, "raykiln.json",
        {kSidecar, full_gltf().gltf()});
 }
 TEST(Fuzz, Gltf) {

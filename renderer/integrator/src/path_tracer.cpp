@@ -124,7 +124,7 @@ void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
   RenderStats& stats = call.stats;
   const Clock::time_point start = Clock::now();
   const double traversal_before = stats.traversal_seconds;
-  ShadingSinks sinks{call.results, scratch.shadows, scratch.next, stats, call.stop};
+  ShadingSinks sinks{call.results, scratch.shadows, scratch.next, stats, call.stop, {}};
   scratch.loop.run(scratch.transport, {scratch.front, scratch.hits, begin, end}, sinks);
   scratch.shadows.flush(scratch.transport.tree, scratch.transport.settings.traversal, call.results,
                         stats);

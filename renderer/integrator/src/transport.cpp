@@ -13,7 +13,8 @@ constexpr EffectSet kSources{Effect::kPointLights,       Effect::kSpotLights,
 constexpr EffectSet kFolded{
     Effect::kPointLights,     Effect::kSpotLights,  Effect::kDirectionalLights,
     Effect::kEmitterSampling, Effect::kBackground,  Effect::kEnvironment,
-    Effect::kFresnel,         Effect::kShadingNormals, Effect::kRoulette};
+    Effect::kFresnel,         Effect::kShadingNormals, Effect::kRoulette,
+    Effect::kTextures};
 
 PathSettings folded(PathSettings s, const Emitters& emitters) {
   const EffectSet simulated = s.simulated;
@@ -40,6 +41,7 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
               .directional_lights = scene.emitters.directional_lights(),
               .background = s.background,
               .environment = scene.emitters.environment(),
+              .textures = s.textures.get(),
               .normals = simulated.contains(Effect::kShadingNormals),
               .settings = folded(settings, scene.emitters)};
   if (!simulated.contains(Effect::kPointLights)) t.point_lights = {};
@@ -47,6 +49,7 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
   if (!simulated.contains(Effect::kDirectionalLights)) t.directional_lights = {};
   if (!simulated.contains(Effect::kBackground)) t.background = Rgb(0.0F);
   if (!simulated.contains(Effect::kEnvironment)) t.environment = nullptr;
+  if (!simulated.contains(Effect::kTextures)) t.textures = nullptr;
   t.environment_sampling = t.environment != nullptr && settings.emitter_sampling &&
                            simulated.contains(Effect::kEmitterSampling);
   t.has_light = simulated.contains_any(kSources) &&

@@ -8,7 +8,7 @@
 namespace raykiln::render {
 
 /// Data of effects that are not simulated are not here: no point light, a black background, no
-/// environment, roulette off.
+/// environment, no textures, roulette off.
 struct Transport {
   const Scene& scene;
   const TriangleMesh& mesh;
@@ -20,6 +20,7 @@ struct Transport {
   Rgb background{0.0F};
   const EnvironmentLight* environment = nullptr;
   bool environment_sampling = false;  ///< shadow rays are sent to it, too
+  const SurfaceTextures* textures = nullptr;
   bool normals = true;    ///< shading normals are interpolated
   bool has_light = true;  ///< any at all; without, nothing is lost where a path is cut off
   PathSettings settings;  ///< emitter_sampling: of triangles

@@ -11,6 +11,7 @@
 #include "raykiln/shading/matte_bsdf.hpp"
 #include "raykiln/shading/punctual_light.hpp"
 #include "raykiln/shading/surface_point.hpp"
+#include "raykiln/shading/texture_lookup.hpp"
 #include "vertex_shading.hpp"
 
 namespace raykiln::render {
@@ -91,7 +92,7 @@ class VertexShader {
     const SurfacePoint point =
         surface_point(scene_.mesh, hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v),
                       kSwitches.normals && scene_.normals);
-    const Material& material = scene_.scene.materials[point.material];
+    const Material& material = material_at(point, hit);
     add_emission(point, material.emission, ray, hit.t);
     if (zero(material.diffuse) && zero(material.specular)) return;
     if (kSwitches.reduced && state_.bounce > 0 && leaves_out(Effect::kIndirectLight)) return;
@@ -111,6 +112,14 @@ class VertexShader {
   }
 
  private:
+  const Material& material_at(const SurfacePoint& point, const Hit& hit) {
+    const Material& material = scene_.scene.materials[point.material];
+    if (scene_.textures == nullptr) return material;
+    paint(*scene_.textures, material, point.material,
+          {hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v)}, sinks_.painted);
+    return sinks_.painted;
+  }
+
   Lobes lobes(const Material& material, const SurfacePoint& point, const Vec3f& wo) const {
     const Vec3f ng(point.ng);
     if constexpr (!kSwitches.specular) {
@@ -199,9 +208,14 @@ class VertexShader {
     const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
     if (value.f_cos == Rgbd(0.0)) return;
     const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
+    Rgbd radiance = sample.radiance;
+    if (scene_.textures != nullptr) {
+      radiance *= emission_factor(*scene_.textures, sample.point.material,
+                                  {sample.triangle, sample.u, sample.v});
+    }
     const Vec3f from = ray_origin(vertex.point, wi);
     queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface},
-          state_.throughput * value.f_cos * sample.radiance * weight);
+          state_.throughput * value.f_cos * radiance * weight);
   }
 
   /// One direction to the environment, weighted against the path's own rays finding it.

@@ -17,6 +17,7 @@ struct ShadingSinks {
   PathStream& next;
   RenderStats& stats;
   const std::stop_token& stop;
+  Material painted{};  ///< scratch: a material with its textures at one point
   bool stopped = false;  ///< stop was seen: the outcome is worthless, return soon
 };
 

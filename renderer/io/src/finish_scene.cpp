@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "material_mapping.hpp"
@@ -35,7 +36,7 @@ class Finisher {
     if (!round_positions() || !drop_flat_triangles()) return false;
     scene_.mesh.normals = std::move(draft_.normals);
     finish_materials();
-    return finish_lights() && finish_cameras() && finish_background();
+    return finish_textures() && finish_lights() && finish_cameras() && finish_background();
   }
 
  private:
@@ -123,17 +124,30 @@ class Finisher {
       draft_.triangles[kept] = t;
       draft_.material_ids[kept] = draft_.material_ids[i];
       if (with_normals) draft_.corner_normals[kept] = usable(draft_.corner_normals[i]);
+      for (UvSet& set : draft_.textures.uv_sets) move_uv(set, i, kept);
       ++kept;
     }
     report_dropped(draft_.triangles.size() - kept, collapsed);
     draft_.positions = {};
     draft_.triangles.resize(kept);
+    for (UvSet& set : draft_.textures.uv_sets) {
+      set.corners.resize(std::min(set.corners.size(), kept));
+    }
     draft_.material_ids.resize(kept);
     if (with_normals) draft_.corner_normals.resize(kept);
     mesh.triangles = std::move(draft_.triangles);
     mesh.material_ids = std::move(draft_.material_ids);
     mesh.corner_normals = std::move(draft_.corner_normals);
     return kept > 0 || empty();
+  }
+
+  // Triangles beyond the end of a set have no coordinates in it.
+  static void move_uv(UvSet& set, std::size_t from, std::size_t to) {
+    if (to < set.corners.size()) {
+      set.corners[to] = from < set.corners.size()
+                            ? set.corners[from]
+                            : std::array<std::uint32_t, 3>{kNoUv, kNoUv, kNoUv};
+    }
   }
 
   // Up to the rounding of double; the question is only which warning to give.
@@ -197,6 +211,67 @@ class Finisher {
       diagnostics_.warn(ImportWarningCode::kUnknownMaterial,
                         "material " + in_quotes(name) + " is not defined and becomes diffuse grey",
                         report_.root_file);
+    }
+  }
+
+  // Pictures and coordinates that no triangle's material reads are dropped here.
+  bool finish_textures() {
+    DraftTextures& draft = draft_.textures;
+    draft.materials.resize(scene_.materials.size());
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      if (!used_[i]) draft.materials[i] = {};
+    }
+    if (!draft.any()) return true;
+    auto textures = std::make_shared<SurfaceTextures>();
+    std::vector<std::uint32_t> new_id(draft.images.size(), kNoTexture);
+    const auto keep = [&](TextureUse& use) {
+      if (!use.used()) return;
+      if (new_id[use.image] == kNoTexture) {
+        new_id[use.image] = static_cast<std::uint32_t>(textures->images.size());
+        textures->images.push_back(std::move(draft.images[use.image]));
+      }
+      use.image = new_id[use.image];
+    };
+    std::array<bool, 2> set_used{};
+    for (MaterialTextures& used : draft.materials) {
+      for (TextureUse* use : {&used.base, &used.emission}) {
+        keep(*use);
+        if (use->used()) set_used[use->uv_set] = true;
+      }
+    }
+    for (std::size_t set = 0; set < 2; ++set) {
+      if (set_used[set]) textures->uv_sets[set] = std::move(draft.uv_sets[set]);
+    }
+    textures->materials = std::move(draft.materials);
+    check_corners(*textures);
+    scene_.textures = std::move(textures);
+    return diagnostics_.may_go_on();
+  }
+
+  // An index beyond the coordinates is none. Triangles whose texture has no place are listed.
+  void check_corners(SurfaceTextures& textures) {
+    for (UvSet& set : textures.uv_sets) {
+      for (auto& corners : set.corners) {
+        for (std::uint32_t& id : corners) {
+          if (id >= set.coordinates.size()) id = kNoUv;
+        }
+      }
+    }
+    std::uint64_t missing = 0;
+    for (std::size_t i = 0; i < scene_.mesh.triangles.size(); ++i) {
+      const MaterialTextures& used = textures.materials[scene_.mesh.material_ids[i]];
+      for (const TextureUse* use : {&used.base, &used.emission}) {
+        if (!use->used()) continue;
+        const auto& corners = textures.uv_sets[use->uv_set].corners;
+        const bool complete = i < corners.size() && corners[i][0] != kNoUv &&
+                              corners[i][1] != kNoUv && corners[i][2] != kNoUv;
+        missing += complete ? 0U : 1U;
+      }
+    }
+    if (missing > 0) {
+      diagnostics_.warn(ImportWarningCode::kIgnoredTexture,
+                        "triangles with a texture but without texture coordinates are plain",
+                        report_.root_file, "", missing);
     }
   }
 

@@ -142,9 +142,11 @@ std::optional<GltfAccessors::Layout> GltfAccessors::layout(const JsonAt& at, std
   return result;
 }
 
-std::optional<std::vector<Vec3d>> GltfAccessors::vectors(std::uint64_t index, const JsonAt& at) {
+std::optional<std::vector<Vec3d>> GltfAccessors::vectors(std::uint64_t index, const JsonAt& at,
+                                                         int components) {
   const auto found = accessor(index, at);
-  const auto place_of = found ? layout(*found, "VEC3", 3) : std::nullopt;
+  const auto place_of = found ? layout(*found, components == 3 ? "VEC3" : "VEC2",
+                                               static_cast<std::size_t>(components)) : std::nullopt;
   if (!place_of) return std::nullopt;
   if (place_of->data == nullptr && place_of->count > kFreeZeros) {
     found->fail(ImportErrorCode::kLimitExceeded, "the accessor has a large count but no buffer view");
@@ -155,12 +157,12 @@ std::optional<std::vector<Vec3d>> GltfAccessors::vectors(std::uint64_t index, co
   for (std::size_t i = 0; place_of->data != nullptr && i < values.size(); ++i) {
     if (i % kItemsPerPoll == 0 && !at.diagnostics().may_go_on()) return std::nullopt;
     const char* from = place_of->data + i * place_of->stride;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < components; ++axis) {
       values[i][axis] = component(from + static_cast<std::size_t>(axis) * bytes,
                                   place_of->component_type, place_of->normalized);
     }
   }
-  if (found->has("sparse") && !apply_sparse(*found, *place_of, values)) return std::nullopt;
+  if (found->has("sparse") && !apply_sparse(*found, *place_of, components, values)) return std::nullopt;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (finite(values[i])) continue;
     found->fail(ImportErrorCode::kNotFinite, "element " + std::to_string(i) + " is not finite",
@@ -170,7 +172,7 @@ std::optional<std::vector<Vec3d>> GltfAccessors::vectors(std::uint64_t index, co
   return values;
 }
 
-bool GltfAccessors::apply_sparse(const JsonAt& accessor, const Layout& base,
+bool GltfAccessors::apply_sparse(const JsonAt& accessor, const Layout& base, int components,
                                  std::vector<Vec3d>& values) {
   const auto sparse = accessor.object("sparse");
   if (!sparse) return false;
@@ -197,7 +199,8 @@ bool GltfAccessors::apply_sparse(const JsonAt& accessor, const Layout& base,
   const char* index_data = place(index_view, index_offset, count, component_bytes(index_type),
                                  index_stride, *where);
   if (index_data == nullptr) return false;
-  const char* value_data = place(value_view, value_offset, count, bytes * 3, value_stride, *what);
+  const char* value_data = place(value_view, value_offset, count, bytes * static_cast<std::size_t>(components),
+                                 value_stride, *what);
   if (value_data == nullptr) return false;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t target = index_component(index_data + i * index_stride, index_type);
@@ -205,7 +208,7 @@ bool GltfAccessors::apply_sparse(const JsonAt& accessor, const Layout& base,
       return where->fail(ImportErrorCode::kIndexOutOfRange,
                          "sparse index " + std::to_string(target) + " is out of range");
     }
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < components; ++axis) {
       values[target][axis] =
           component(value_data + i * value_stride + static_cast<std::size_t>(axis) * bytes,
                     base.component_type, base.normalized);

@@ -23,7 +23,13 @@ class GltfAccessors {
 
   /// A VEC3 accessor of any component type; normalised integers become [-1, 1] or [0, 1]. Non-finite
   /// values are an error that names the element.
-  std::optional<std::vector<Vec3d>> vectors(std::uint64_t index, const JsonAt& at);
+  std::optional<std::vector<Vec3d>> vectors(std::uint64_t index, const JsonAt& at) {
+    return vectors(index, at, 3);
+  }
+  /// The same for a VEC2 accessor; the third component is 0.
+  std::optional<std::vector<Vec3d>> pairs(std::uint64_t index, const JsonAt& at) {
+    return vectors(index, at, 2);
+  }
   /// A SCALAR accessor of unsigned integers.
   std::optional<std::vector<std::uint32_t>> indices(std::uint64_t index, const JsonAt& at);
 
@@ -43,7 +49,9 @@ class GltfAccessors {
   /// fit.
   const char* place(std::uint64_t view, std::uint64_t offset, std::uint64_t count,
                     std::size_t size, std::size_t& stride, const JsonAt& at);
-  bool apply_sparse(const JsonAt& accessor, const Layout& layout, std::vector<Vec3d>& values);
+  std::optional<std::vector<Vec3d>> vectors(std::uint64_t index, const JsonAt& at, int components);
+  bool apply_sparse(const JsonAt& accessor, const Layout& layout, int components,
+                    std::vector<Vec3d>& values);
 
   std::optional<JsonAt> accessors_;
   GltfBuffers* buffers_;

@@ -13,7 +13,8 @@ constexpr double kLargestWeight = 1e6;
 void note_texture(const JsonAt& at, const char* key) {
   if (!at.has(key)) return;
   at.warn(ImportWarningCode::kIgnoredTexture,
-          "textures are not supported yet: " + std::string(key) + " is ignored, factors are used");
+          "textures of this kind are not supported yet: " + std::string(key) +
+              " is ignored, factors are used");
 }
 
 void set_base_color(const JsonAt& at, const char* key, GltfMaterial& material) {
@@ -34,7 +35,6 @@ void read_metallic_roughness(const JsonAt& at, GltfMaterial& material) {
   set_base_color(at, "baseColorFactor", material);
   material.metallic = at.number_in("metallicFactor", 1.0, 0.0, 1.0);
   material.roughness = at.number_in("roughnessFactor", 1.0, 0.0, 1.0);
-  note_texture(at, "baseColorTexture");
   note_texture(at, "metallicRoughnessTexture");
 }
 
@@ -44,7 +44,6 @@ void read_specular_glossiness(const JsonAt& at, GltfMaterial& material) {
   material.metallic = 0.0;
   material.roughness = 1.0 - at.number_in("glossinessFactor", 1.0, 0.0, 1.0);
   material.specular_color = at.vec3_in("specularFactor", Vec3d(1.0), 0.0, 1.0) / 0.04;
-  note_texture(at, "diffuseTexture");
   note_texture(at, "specularGlossinessTexture");
 }
 
@@ -78,11 +77,34 @@ void read_extensions(const JsonAt& at, GltfMaterial& material) {
 
 void read_emission(const JsonAt& at, GltfMaterial& material) {
   material.emissive = at.vec3_in("emissiveFactor", Vec3d(0.0), 0.0, kLargestWeight);
-  if (!at.has("emissiveTexture") || material.emissive == Rgbd(0.0)) return;
-  material.emissive = Rgbd(0.0);
-  at.warn(ImportWarningCode::kIgnoredTexture,
-          "textures are not supported yet: emission with an emissiveTexture is left out, because "
-          "the texture decides where the surface glows");
+}
+
+// A base colour texture of a black base colour, or an emissive one of no emission, is not read.
+bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& material,
+                   MaterialTextures& used) {
+  const auto extensions = at.object("extensions");
+  const auto glossiness =
+      extensions ? extensions->object("KHR_materials_pbrSpecularGlossiness") : std::nullopt;
+  const auto roughness = at.object("pbrMetallicRoughness");
+  const auto& holder = glossiness ? glossiness : roughness;
+  if (holder && material.base_color != Rgbd(0.0)) {
+    const auto base = textures.use(*holder, glossiness ? "diffuseTexture" : "baseColorTexture");
+    if (!base) return false;
+    used.base = *base;
+    used.specular_tint = specular_tint(material);
+    if (used.base.used() && at.text_or("alphaMode", "OPAQUE") != "OPAQUE") {
+      at.warn(ImportWarningCode::kIgnoredFeature, "the alpha of textures is ignored");
+    }
+  }
+  if (!at.has("emissiveTexture") || material.emissive == Rgbd(0.0)) {
+    return !at.diagnostics().failed();
+  }
+  const auto emission = textures.use(at, "emissiveTexture");
+  if (!emission) return false;
+  used.emission = *emission;
+  // The texture decides where the surface glows: without it, nowhere.
+  if (!used.emission.used()) material.emissive = Rgbd(0.0);
+  return true;
 }
 
 void apply_alpha_mode(const JsonAt& at, GltfMaterial& material) {
@@ -106,7 +128,8 @@ std::string unique_name(const JsonAt& at, std::size_t index, const MaterialTable
   return candidate;
 }
 
-std::uint32_t read_material(const JsonAt& at, std::size_t index, SceneDraft& draft) {
+std::uint32_t read_material(const JsonAt& at, std::size_t index, GltfTextures& textures,
+                            SceneDraft& draft) {
   GltfMaterial material;
   material.name = unique_name(at, index, draft.materials);
   if (const auto pbr = at.object("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
@@ -115,7 +138,10 @@ std::uint32_t read_material(const JsonAt& at, std::size_t index, SceneDraft& dra
   apply_alpha_mode(at, material);
   note_texture(at, "normalTexture");
   note_texture(at, "occlusionTexture");
+  MaterialTextures used;
+  if (!at.diagnostics().failed() && !read_textures(at, textures, material, used)) return 0;
   const std::uint32_t id = draft.materials.intern(material.name);
+  if (used.used()) draft.textures.of_material(id) = used;
   draft.materials.materials[id] = to_material(material);
   draft.materials.defined[id] = true;
   return id;
@@ -124,6 +150,7 @@ std::uint32_t read_material(const JsonAt& at, std::size_t index, SceneDraft& dra
 }  // namespace
 
 std::optional<std::vector<std::uint32_t>> read_gltf_materials(const JsonAt& root,
+                                                              GltfTextures& textures,
                                                               SceneDraft& draft) {
   std::vector<std::uint32_t> ids;
   const auto materials = root.array("materials");
@@ -136,7 +163,7 @@ std::optional<std::vector<std::uint32_t>> read_gltf_materials(const JsonAt& root
   for (std::size_t i = 0; i < materials->size(); ++i) {
     const JsonAt at = materials->element(i);
     if (!at.expect_object()) return std::nullopt;
-    ids.push_back(read_material(at, i, draft));
+    ids.push_back(read_material(at, i, textures, draft));
     if (!root.diagnostics().may_go_on()) return std::nullopt;
   }
   return ids;

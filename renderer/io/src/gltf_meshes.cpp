@@ -101,7 +101,9 @@ bool GltfMeshes::primitive(const JsonAt& at, const Mat4d& to_world) {
   placed.mirrored = determinant(to_world) < 0.0;
   note_ignored(at, *attributes);
   return material_of(at, placed.material) && place_vertices(at, *attributes, to_world, placed) &&
-         place_normals(at, *attributes, to_world, placed) && triangles(at, mode, placed);
+         place_normals(at, *attributes, to_world, placed) &&
+         place_uvs(at, *attributes, 0, placed) && place_uvs(at, *attributes, 1, placed) &&
+         triangles(at, mode, placed);
 }
 
 void GltfMeshes::note_ignored(const JsonAt& at, const JsonAt& attributes) {
@@ -185,6 +187,36 @@ bool GltfMeshes::place_normals(const JsonAt& at, const JsonAt& attributes, const
   return true;
 }
 
+// Only for materials with a texture that reads this set.
+bool GltfMeshes::place_uvs(const JsonAt& at, const JsonAt& attributes, std::size_t set,
+                           Placed& placed) {
+  const DraftTextures& textures = draft_->textures;
+  if (placed.material >= textures.materials.size()) return true;
+  const MaterialTextures& used = textures.materials[placed.material];
+  const auto reads = [set](const TextureUse& use) { return use.used() && use.uv_set == set; };
+  if (!reads(used.base) && !reads(used.emission)) return true;
+  const char* key = set == 0 ? "TEXCOORD_0" : "TEXCOORD_1";
+  if (!attributes.has(key)) return true;  // finish_scene lists it
+  const JsonAt where = attributes.member(key);
+  const auto accessor = where.integer();
+  const auto count = accessor ? accessors_->count(*accessor, where) : std::nullopt;
+  if (!count) return false;
+  if (*count != placed.vertices) {
+    return where.fail(ImportErrorCode::kInvalidValue,
+                      "there are " + std::to_string(*count) + " texture coordinates for " +
+                          std::to_string(placed.vertices) + " vertices");
+  }
+  std::vector<Vec2f>& coordinates = draft_->textures.uv_sets[set].coordinates;
+  if (*count > at.diagnostics().limits().max_vertices - coordinates.size()) {
+    return at.fail(ImportErrorCode::kLimitExceeded, "the scene has too many texture coordinates");
+  }
+  const auto values = accessors_->pairs(*accessor, where);
+  if (!values) return false;
+  placed.first_uv[set] = static_cast<std::uint32_t>(coordinates.size());
+  for (const Vec3d& uv : *values) coordinates.emplace_back(uv.x, uv.y);
+  return true;
+}
+
 bool GltfMeshes::triangles(const JsonAt& at, std::uint64_t mode, const Placed& placed) {
   std::vector<std::uint32_t> ids;
   std::uint64_t corners = placed.vertices;
@@ -224,6 +256,14 @@ bool GltfMeshes::triangles(const JsonAt& at, std::uint64_t mode, const Placed& p
       if (placed.first_normal != kNoNormal) normal[k] = placed.first_normal + id;
     }
     draft_->add_triangle(position, normal, placed.material);
+    for (std::size_t set = 0; set < 2; ++set) {
+      if (placed.first_uv[set] == kNoUv) continue;
+      std::array<std::uint32_t, 3> uv{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        uv[k] = placed.first_uv[set] + position[k] - placed.first_position;
+      }
+      draft_->textures.add_corners(set, draft_->triangles.size() - 1, uv);
+    }
   }
   return true;
 }

@@ -1,6 +1,7 @@
 // Meshes of a glTF file, placed in the world.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,7 @@ class GltfMeshes {
   struct Placed {
     std::uint32_t first_position = 0;
     std::uint32_t first_normal = kNoNormal;  ///< kNoNormal: the primitive has none
+    std::array<std::uint32_t, 2> first_uv{kNoUv, kNoUv};  ///< of the sets that its material reads
     std::uint64_t vertices = 0;
     std::uint32_t material = 0;
     bool mirrored = false;
@@ -31,6 +33,7 @@ class GltfMeshes {
                       Placed& placed);
   bool place_normals(const JsonAt& at, const JsonAt& attributes, const Mat4d& to_world,
                      Placed& placed);
+  bool place_uvs(const JsonAt& at, const JsonAt& attributes, std::size_t set, Placed& placed);
   bool material_of(const JsonAt& at, std::uint32_t& id);
   bool triangles(const JsonAt& at, std::uint64_t mode, const Placed& placed);
   void note_ignored(const JsonAt& at, const JsonAt& attributes);

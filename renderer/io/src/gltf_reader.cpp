@@ -18,17 +18,16 @@
 namespace raykiln::render::io {
 namespace {
 
-constexpr std::array<std::string_view, 7> kSupported{
+constexpr std::array<std::string_view, 8> kSupported{
     "KHR_lights_punctual",        "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_specular",     "KHR_materials_transmission",
-    "KHR_mesh_quantization"};
+    "KHR_mesh_quantization",      "KHR_texture_transform"};
 
-// They change how textures are stored or placed only; as textures are ignored, so are these, even
-// when the file requires them.
-constexpr std::array<std::string_view, 5> kTextureOnly{
-    "EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu", "KHR_texture_transform",
-    "MSFT_texture_dds"};
+// They change how textures are stored only: a texture that is used and has no other source is an
+// error of its own.
+constexpr std::array<std::string_view, 4> kTextureOnly{"EXT_texture_avif", "EXT_texture_webp",
+                                                       "KHR_texture_basisu", "MSFT_texture_dds"};
 
 template <std::size_t N>
 bool contains(const std::array<std::string_view, N>& list, std::string_view name) {
@@ -77,9 +76,10 @@ bool read_document(const SceneFiles& files, const JsonAt& root,
               "animations are ignored: the rest pose is shown");
   }
   draft.single_precision = true;
-  auto materials = read_gltf_materials(root, draft);
-  if (!materials) return false;
   GltfBuffers buffers(files, root, glb_chunk);
+  GltfTextures textures(files, root, buffers, draft);
+  auto materials = read_gltf_materials(root, textures, draft);
+  if (!materials) return false;
   GltfAccessors accessors(root, buffers);
   GltfMeshes meshes(root, accessors, std::move(*materials), draft);
   return !root.diagnostics().failed() && GltfNodes(root, meshes, draft).walk();

@@ -23,7 +23,7 @@ Material to_material(const MtlMaterial& mtl) {
   const bool has_highlight = mtl.illum >= 2;  // 0: colour only, 1: Lambert
   material.specular = has_highlight ? Rgb(mtl.ks) : Rgb(0.0F);
   material.specular_exp = mtl.ns;
-  material.emission = Rgb(mtl.ke);
+  material.emission = Rgb(mtl.ke.value_or(Rgbd(0.0)));
   const bool glass = mtl.illum == 4 || mtl.illum == 6 || mtl.illum == 7 || mtl.illum == 9;
   const double t = 1.0 - mtl.opacity.value_or(glass ? 0.0 : 1.0);
   if (t > 0.0) {
@@ -62,6 +62,17 @@ Material to_material(const GltfMaterial& gltf) {
     material.index_of_refraction = 1.0F;  // coverage, not a body of glass
   }
   return material;
+}
+
+Rgb specular_tint(const GltfMaterial& gltf) {
+  GltfMaterial black = gltf;
+  black.base_color = Rgbd(0.0);
+  const Rgb all = to_material(gltf).specular, untinted = to_material(black).specular;
+  Rgb tint(0.0F);
+  for (int c = 0; c < 3; ++c) {
+    if (all[c] > 0.0F) tint[c] = std::clamp((all[c] - untinted[c]) / all[c], 0.0F, 1.0F);
+  }
+  return tint;
 }
 
 float largest_albedo(const Material& material) {

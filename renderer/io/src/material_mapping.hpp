@@ -17,7 +17,7 @@ struct MtlMaterial {
   std::string name;
   Rgbd kd{0.8};
   Rgbd ks{0.0};
-  Rgbd ke{0.0};
+  std::optional<Rgbd> ke;
   Rgbd tf{1.0};
   double ns = 10.0;
   std::optional<double> ni;
@@ -41,6 +41,9 @@ struct GltfMaterial {
   Rgbd specular_color{1.0};
 };
 [[nodiscard]] Material to_material(const GltfMaterial& gltf);
+
+/// Share of its specular weight, for each channel, that the base colour multiplies.
+[[nodiscard]] Rgb specular_tint(const GltfMaterial& gltf);
 
 /// Exponent of the lobe about the mirror direction that looks like roughness r:
 /// a Blinn-Phong lobe about the half vector with exponent 2/r^4 - 2 (alpha = r^2) is about four

@@ -8,6 +8,7 @@
 
 #include "line_reader.hpp"
 #include "material_mapping.hpp"
+#include "mtl_map.hpp"
 #include "scene_file_names.hpp"
 #include "text_numbers.hpp"
 
@@ -18,8 +19,9 @@ constexpr double kLargestWeight = 1e6;  // of a colour that should lie in [0, 1]
 
 class MtlReader {
  public:
-  MtlReader(SceneFile& file, const std::string& name, Diagnostics& diagnostics, SceneDraft& draft)
-      : diagnostics_(diagnostics), draft_(draft), lines_(file, name, diagnostics) {}
+  MtlReader(const SceneFiles& files, SceneFile& file, const std::string& name,
+            Diagnostics& diagnostics, SceneDraft& draft)
+      : files_(files), diagnostics_(diagnostics), draft_(draft), lines_(file, name, diagnostics) {}
 
   bool read() {
     std::string_view text;
@@ -40,7 +42,9 @@ class MtlReader {
     }
     if (word == "Kd") return color(text, word, kLargestWeight, current_->kd);
     if (word == "Ks") return color(text, word, kLargestWeight, current_->ks);
-    if (word == "Ke") return color(text, word, diagnostics_.limits().max_radiance, current_->ke);
+    if (word == "Ke") return emission(text, word);
+    if (word == "map_Kd") return map(text, base_);
+    if (word == "map_Ke") return map(text, emission_);
     if (word == "Tf") return color(text, word, kLargestWeight, current_->tf);
     if (word == "Ns") return number(text, word, 0.0, kMaxExponent, current_->ns);
     if (word == "Ni") return refraction(text);
@@ -54,7 +58,8 @@ class MtlReader {
     if (word.starts_with("map_") || word == "bump" || word == "disp" || word == "decal" ||
         word == "refl" || word == "norm") {
       warn(ImportWarningCode::kIgnoredTexture,
-           "textures are not supported yet: " + in_quotes(word) + " is ignored, factors are used");
+           "textures of this kind are not supported yet: " + in_quotes(word) +
+               " is ignored, factors are used");
       return true;
     }
     warn(ImportWarningCode::kUnknownStatement, "the statement " + in_quotes(word) + " is ignored");
@@ -71,6 +76,7 @@ class MtlReader {
     }
     current_.emplace();
     current_->name = name;
+    base_ = emission_ = {};
     return true;
   }
 
@@ -78,6 +84,12 @@ class MtlReader {
     if (!current_) return true;
     const std::uint32_t id = draft_.materials.intern(current_->name);
     if (!draft_.materials.defined[id]) {
+      if (emission_.used() && !current_->ke) current_->ke = Rgbd(1.0);
+      if (base_.used() || emission_.used()) {
+        MaterialTextures& used = draft_.textures.of_material(id);
+        used.base = base_;
+        used.emission = emission_;
+      }
       draft_.materials.materials[id] = to_material(*current_);
       draft_.materials.defined[id] = true;
     }
@@ -124,6 +136,28 @@ class MtlReader {
     return true;
   }
 
+  bool emission(std::string_view text, std::string_view word) {
+    Rgbd value = current_->ke.value_or(Rgbd(0.0));
+    if (!color(text, word, diagnostics_.limits().max_radiance, value)) return false;
+    current_->ke = value;
+    return true;
+  }
+
+  bool map(std::string_view text, TextureUse& use) {
+    MtlMap map = read_mtl_map(text);
+    if (map.file.empty()) return lines_.fail(ImportErrorCode::kSyntax, "the texture has no name");
+    for (const std::string& option : map.ignored) {
+      warn(ImportWarningCode::kIgnoredFeature,
+           "the texture option " + in_quotes(option) + " is ignored");
+    }
+    const auto image = draft_.textures.beside(
+        files_, map.file, {lines_.file_name(), line_text(lines_.line())}, diagnostics_);
+    if (!image) return false;
+    use = map.use;
+    use.image = *image;
+    return true;
+  }
+
   bool refraction(std::string_view text) {
     double value = 0.0;
     if (!number(text, "Ni", 0.0, 1e6, value)) return false;
@@ -161,9 +195,11 @@ class MtlReader {
     diagnostics_.warn(code, message, lines_.file_name(), line_text(lines_.line()));
   }
 
+  const SceneFiles& files_;
   Diagnostics& diagnostics_;
   SceneDraft& draft_;
   LineReader lines_;
+  TextureUse base_, emission_;  ///< of the current material
   std::optional<MtlMaterial> current_;
   std::string opacity_owner_;  ///< material whose d was read
 };
@@ -173,7 +209,7 @@ class MtlReader {
 bool read_mtl(const SceneFiles& files, const std::string& name, Diagnostics& diagnostics,
               SceneDraft& draft) {
   const auto file = open_limited(files, name, diagnostics.limits().max_mtl_bytes, diagnostics);
-  return file != nullptr && MtlReader(*file, name, diagnostics, draft).read();
+  return file != nullptr && MtlReader(files, *file, name, diagnostics, draft).read();
 }
 
 }  // namespace raykiln::render::io

@@ -32,7 +32,8 @@ bool ObjFaces::resolve(std::int64_t index, std::size_t defined, std::string_view
                        "indices count from 1, or from -1 backwards");
 }
 
-// "p", "p/t", "p//n" or "p/t/n". Texture coordinates are not used, so their index is not checked.
+// "p", "p/t", "p//n" or "p/t/n". An index of texture coordinates that leads nowhere is as none: most
+// files name some and never use them.
 bool ObjFaces::parse_corner(std::string_view word, FaceCorner& corner) {
   const std::string_view whole = word;
   const auto malformed = [&] {
@@ -46,10 +47,17 @@ bool ObjFaces::parse_corner(std::string_view word, FaceCorner& corner) {
   if (!take_integer(word, position)) return malformed();
   if (!resolve(position, draft_->positions.size(), "vertex", corner.position)) return false;
   corner.normal = kNoNormal;
+  corner.uv = kNoUv;
   if (word.empty()) return true;
   if (word[0] != '/') return malformed();
   word.remove_prefix(1);
   if (!word.empty() && word[0] != '/' && !take_integer(word, texture)) return malformed();
+  const auto coordinates =
+      static_cast<std::int64_t>(draft_->textures.uv_sets[0].coordinates.size());
+  if (texture < 0) texture += coordinates + 1;
+  if (texture > 0 && texture < std::int64_t{kNoUv}) {
+    corner.uv = static_cast<std::uint32_t>(texture - 1);
+  }
   if (word.empty()) return true;
   if (word[0] != '/') return malformed();
   word.remove_prefix(1);
@@ -155,6 +163,8 @@ void ObjFaces::emit_triangle(const FaceCorner& a, const FaceCorner& b, const Fac
                              std::uint32_t material) {
   draft_->add_triangle({a.position, b.position, c.position}, {a.normal, b.normal, c.normal},
                        material);
+  if (a.uv == kNoUv && b.uv == kNoUv && c.uv == kNoUv) return;
+  draft_->textures.add_corners(0, draft_->triangles.size() - 1, {a.uv, b.uv, c.uv});
 }
 
 }  // namespace raykiln::render::io

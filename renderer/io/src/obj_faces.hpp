@@ -14,6 +14,7 @@ namespace raykiln::render::io {
 struct FaceCorner {
   std::uint32_t position = 0;
   std::uint32_t normal = kNoNormal;
+  std::uint32_t uv = kNoUv;
 };
 
 class ObjFaces {

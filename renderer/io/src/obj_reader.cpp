@@ -53,7 +53,8 @@ class ObjReader {
     if (word == "v") return vertex(text);
     if (word == "f" || word == "fo") return face(text);
     if (word == "vn") return normal(text);
-    if (word == "vt" || word == "g" || word == "o" || word == "s") return true;
+    if (word == "vt") return texture_coordinate(text);
+    if (word == "g" || word == "o" || word == "s") return true;
     if (word == "usemtl") return use_material(text);
     if (word == "mtllib") return use_library(text);
     return other(word);
@@ -141,6 +142,20 @@ class ObjReader {
     const double longest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
     if (longest > 0.0) n = normalize(n / longest);  // by parts: the square may overflow
     draft_.normals.emplace_back(n);
+    return true;
+  }
+
+  // v counts upwards in the file and downwards in a scene. What is not finite is left to the look-up,
+  // which takes it as 0; a second number may be missing.
+  bool texture_coordinate(std::string_view text) {
+    double u = 0.0, v = 0.0;
+    if (take_number(text, u) == NumberStatus::kOk) {
+      if (take_number(text, v) != NumberStatus::kOk) v = 0.0;
+    }
+    std::vector<Vec2f>& coordinates = draft_.textures.uv_sets[0].coordinates;
+    if (!room(coordinates.size(), "texture coordinates")) return false;
+    constexpr double kMost = 1e30;
+    coordinates.emplace_back(std::clamp(u, -kMost, kMost), std::clamp(1.0 - v, -kMost, kMost));
     return true;
   }
 

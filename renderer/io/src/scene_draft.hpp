@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "draft_textures.hpp"
 #include "raykiln/scene/scene.hpp"
 
 namespace raykiln::render::io {
@@ -66,6 +67,7 @@ struct SceneDraft {
   std::vector<std::array<std::uint32_t, 3>> corner_normals;  ///< empty until one has a normal
   std::vector<std::uint32_t> material_ids;
   MaterialTable materials;
+  DraftTextures textures;
   std::vector<DraftLight> lights;
   std::vector<DraftCamera> cameras;
   std::optional<Rgbd> background;  ///< set by a sidecar only

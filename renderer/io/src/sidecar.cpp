@@ -102,6 +102,7 @@ std::optional<JsonDocument> read_sidecar(const SceneFiles& files, const std::str
   if (!document || !document->root().expect_object()) return std::nullopt;
   if (!document->root().only({"$schema", "scene", "scale", "camera", "cameras", "point_lights",
                               "spot_lights", "directional_lights", "background", "environment",
+                              "allow_missing",
                               "materials"})) {
     return std::nullopt;
   }

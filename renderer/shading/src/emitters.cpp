@@ -4,6 +4,7 @@
 
 #include "raykiln/sampling/warp.hpp"
 #include "raykiln/shading/environment_light.hpp"
+#include "raykiln/shading/texture_lookup.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -17,6 +18,21 @@ double triangle_area(const TriangleMesh& mesh, std::uint32_t id) {
   const Vec3d p0(mesh.positions[corner[0]]);
   return 0.5 * length(cross(Vec3d(mesh.positions[corner[1]]) - p0,
                             Vec3d(mesh.positions[corner[2]]) - p0));
+}
+
+/// What the emission of each material counts for, W sr^-1 m^-2: its largest channel times the mean of
+/// its texture.
+std::vector<double> emission_weights(const Scene& scene) {
+  std::vector<double> weights;
+  weights.reserve(scene.materials.size());
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    weights.push_back(largest_channel(scene.materials[i].emission));
+    if (!(weights.back() > 0.0) || scene.textures == nullptr) continue;
+    if (i >= scene.textures->materials.size()) continue;
+    const TextureUse& use = scene.textures->materials[i].emission;
+    if (use.used()) weights.back() *= mean_largest_channel(scene.textures->images[use.image]);
+  }
+  return weights;
 }
 
 /// Those with power above 0.
@@ -38,10 +54,10 @@ std::shared_ptr<const EnvironmentLight> environment_of(const Scene& scene) {
 
 // The density of a point: (L_max A / total) (1 / A), the area cancels.
 Emitters::Emitters(const Scene& scene) {
+  const std::vector<double> weights = emission_weights(scene);
   std::vector<double> power;
   for (std::uint32_t id = 0; id < scene.mesh.triangles.size(); ++id) {
-    const double radiance =
-        largest_channel(scene.materials[scene.mesh.material_ids[id]].emission);
+    const double radiance = weights[scene.mesh.material_ids[id]];
     if (!(radiance > 0.0)) continue;
     const double weight = radiance * triangle_area(scene.mesh, id);
     if (!(weight > 0.0)) continue;
@@ -51,9 +67,7 @@ Emitters::Emitters(const Scene& scene) {
   distribution_ = DiscreteDistribution(power);
   if (has_triangles()) {
     pdf_area_.reserve(scene.materials.size());
-    for (const Material& material : scene.materials) {
-      pdf_area_.push_back(largest_channel(material.emission) / distribution_.total());
-    }
+    for (const double weight : weights) pdf_area_.push_back(weight / distribution_.total());
   }
   point_lights_ = shining(scene.point_lights, &PointLight::intensity);
   spot_lights_ = shining(scene.spot_lights, &SpotLight::intensity);
@@ -66,6 +80,9 @@ EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex) cons
   const TrianglePoint b = sample_uniform_triangle(uniform(vertex, Dimension::kLightU),
                                                   uniform(vertex, Dimension::kLightV));
   EmitterSample sample;
+  sample.triangle = triangles_[drawn];
+  sample.u = b.b1;
+  sample.v = b.b2;
   sample.point = surface_point(scene.mesh, triangles_[drawn], b.b1, b.b2);
   sample.radiance = Rgbd(scene.materials[sample.point.material].emission);
   sample.pdf_area = pdf_area(sample.point.material);

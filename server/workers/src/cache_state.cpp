@@ -6,6 +6,7 @@
 #include <new>
 
 #include "raykiln/scene/environment_map.hpp"
+#include "raykiln/scene/surface_textures.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -19,6 +20,19 @@ std::uint64_t environment_bytes(const render::Scene& scene) {
   return values * sizeof(float) + values / 3 * sizeof(double);
 }
 
+std::uint64_t texture_bytes(const render::Scene& scene) {
+  if (scene.textures == nullptr) return 0;
+  std::uint64_t bytes = 0;
+  for (const auto& image : scene.textures->images) {
+    bytes += image.srgb8.size() + image.linear.size() * sizeof(float);
+  }
+  for (const auto& set : scene.textures->uv_sets) {
+    bytes += set.coordinates.size() * sizeof(render::Vec2f) +
+             set.corners.size() * sizeof(std::array<std::uint32_t, 3>);
+  }
+  return bytes + scene.textures->materials.size() * sizeof(render::MaterialTextures);
+}
+
 std::uint64_t bytes_of(const render::Scene& scene) {
   const auto& mesh = scene.mesh;
   return sizeof(scene) + mesh.positions.size() * sizeof(render::Vec3f) +
@@ -29,7 +43,8 @@ std::uint64_t bytes_of(const render::Scene& scene) {
          scene.materials.size() * sizeof(render::Material) +
          scene.point_lights.size() * sizeof(render::PointLight) +
          scene.spot_lights.size() * sizeof(render::SpotLight) +
-         scene.directional_lights.size() * sizeof(render::DirectionalLight) + environment_bytes(scene);
+         scene.directional_lights.size() * sizeof(render::DirectionalLight) + environment_bytes(scene) +
+         texture_bytes(scene);
 }
 
 std::string tree_key(const render::Scene& scene, const BuildParams& p) {

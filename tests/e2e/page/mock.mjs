@@ -131,7 +131,7 @@ export class Mock {
       cameras: [{ index: 0, name: "front" }, { index: 1, name: "from above" }],
       effects: effects_of("auto"),
       bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, tree: null, cache: "absent",
-      warnings: [{ code: "ignored_texture", message: "textures are not rendered yet; the factor is used", where: "box.mtl:12", count: 3 }],
+      warnings: [{ code: "ignored_texture", message: "textures of this kind are not supported yet: 'bump' is ignored, factors are used", where: "box.mtl:12", count: 3 }],
     };
     this.scenes.set(id, scene);
     this.json(answer, known ? 200 : 201, scene, { Location: `/v1/scenes/${id}` });

@@ -20,6 +20,7 @@
   ROW(Refraction, refraction)                    \
   ROW(Fresnel, fresnel)                          \
   ROW(ShadingNormals, shading_normals)           \
+  ROW(Textures, textures)                        \
   ROW(IndirectLight, indirect_light)             \
   ROW(Caustics, caustics)                        \
   ROW(Roulette, roulette)

@@ -18,12 +18,14 @@ class EnvironmentLight;  // environment_light.hpp
 /// A point on an emitting triangle.
 struct EmitterSample {
   SurfacePoint point;
-  Rgbd radiance{0.0};  ///< the same to both sides, W sr^-1 m^-2
+  std::uint32_t triangle = 0;
+  double u = 0.0, v = 0.0;  ///< barycentrics in it
+  Rgbd radiance{0.0};  ///< the same to both sides, of a white texture, W sr^-1 m^-2
   double pdf_area = 0.0;  ///< m^-2
 };
 
 /// Emitting triangles, drawn with probability proportional to area times the largest channel of
-/// their radiance (not luminance: permuting channels must not change a draw), then uniformly by
+/// their radiance, times the mean of its texture (not luminance: permuting channels must not change a draw), then uniformly by
 /// area; the lights without a surface that shine at all; the environment map, if there is one.
 /// Triangles of zero area or radiance are left out.
 class Emitters {

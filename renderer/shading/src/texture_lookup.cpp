@@ -1,0 +1,124 @@
+#include "raykiln/shading/texture_lookup.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "raykiln/math/srgb.hpp"
+
+namespace raykiln::render {
+namespace {
+
+std::array<float, 256> decoded_bytes() {
+  std::array<float, 256> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255.0));
+  }
+  return values;
+}
+
+Rgbd texel(const TextureImage& image, int x, int y) {
+  static const std::array<float, 256> kDecoded = decoded_bytes();
+  const std::size_t i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                             static_cast<std::size_t>(x));
+  if (image.srgb8.empty()) return Rgbd(image.linear[i], image.linear[i + 1], image.linear[i + 2]);
+  return Rgbd(kDecoded[image.srgb8[i]], kDecoded[image.srgb8[i + 1]], kDecoded[image.srgb8[i + 2]]);
+}
+
+/// The coordinate brought near [0, 1], so that it stays exact in an int however far out it was.
+double near_unit(double u, TextureWrap wrap) {
+  if (!std::isfinite(u)) return 0.0;
+  switch (wrap) {
+    case TextureWrap::kRepeat: return u - std::floor(u);
+    case TextureWrap::kMirror: return u - 2.0 * std::floor(0.5 * u);
+    case TextureWrap::kClamp: break;
+  }
+  return std::clamp(u, 0.0, 1.0);
+}
+
+/// Index of a texel that may lie outside by less than two pictures.
+int wrapped(int i, int size, TextureWrap wrap) {
+  if (wrap == TextureWrap::kClamp) return std::clamp(i, 0, size - 1);
+  if (wrap == TextureWrap::kRepeat) return (i % size + size) % size;
+  const int period = (i % (2 * size) + 2 * size) % (2 * size);
+  return period < size ? period : 2 * size - 1 - period;
+}
+
+}  // namespace
+
+Rgbd texture_value(const TextureImage& image, const TextureUse& use, double u, double v) {
+  const double x = near_unit(u, use.wrap_u) * image.width;
+  const double y = near_unit(v, use.wrap_v) * image.height;
+  const auto at = [&](int i, int j) {
+    return texel(image, wrapped(i, image.width, use.wrap_u), wrapped(j, image.height, use.wrap_v));
+  };
+  if (use.filter == TextureFilter::kNearest) {
+    return at(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+  }
+  const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
+  const double s = x - 0.5 - left, t = y - 0.5 - top;
+  const int i = static_cast<int>(left), j = static_cast<int>(top);
+  return (1.0 - t) * ((1.0 - s) * at(i, j) + s * at(i + 1, j)) +
+         t * ((1.0 - s) * at(i, j + 1) + s * at(i + 1, j + 1));
+}
+
+Rgbd texture_value(const SurfaceTextures& textures, const TextureUse& use,
+                   const TrianglePlace& at) {
+  const UvSet& set = textures.uv_sets[use.uv_set];
+  if (at.id >= set.corners.size()) return Rgbd(1.0);
+  const auto& corner = set.corners[at.id];
+  if (corner[0] == kNoUv || corner[1] == kNoUv || corner[2] == kNoUv) return Rgbd(1.0);
+  const Vec2f& a = set.coordinates[corner[0]];
+  const Vec2f& b = set.coordinates[corner[1]];
+  const Vec2f& c = set.coordinates[corner[2]];
+  const double first = 1.0 - at.u - at.v;
+  const auto mix = [&](float p, float q, float r) {
+    return first * static_cast<double>(p) + at.u * static_cast<double>(q) +
+           at.v * static_cast<double>(r);
+  };
+  const Vec3d uv(mix(a.x, b.x, c.x), mix(a.y, b.y, c.y), 1.0);
+  return texture_value(textures.images[use.image], use, dot(use.u_row, uv), dot(use.v_row, uv));
+}
+
+// A white texel is exactly 1, and the material exactly what it is without the texture.
+void paint(const SurfaceTextures& textures, const Material& material, std::uint32_t id,
+           const TrianglePlace& at, Material& painted) {
+  painted.diffuse = material.diffuse;
+  painted.specular = material.specular;
+  painted.transparent = material.transparent;
+  painted.specular_exp = material.specular_exp;
+  painted.index_of_refraction = material.index_of_refraction;
+  painted.emission = material.emission;
+  if (id >= textures.materials.size()) return;
+  const MaterialTextures& used = textures.materials[id];
+  if (used.base.used()) {
+    const Rgb value(texture_value(textures, used.base, at));
+    painted.diffuse *= value;
+    painted.specular *= Rgb(1.0F) - used.specular_tint * (Rgb(1.0F) - value);
+  }
+  if (used.emission.used()) {
+    painted.emission = Rgb(Rgbd(material.emission) * texture_value(textures, used.emission, at));
+  }
+}
+
+Rgbd emission_factor(const SurfaceTextures& textures, std::uint32_t material,
+                     const TrianglePlace& at) {
+  if (material >= textures.materials.size()) return Rgbd(1.0);
+  const TextureUse& use = textures.materials[material].emission;
+  return use.used() ? texture_value(textures, use, at) : Rgbd(1.0);
+}
+
+double mean_largest_channel(const TextureImage& image) {
+  double sum = 0.0;
+  for (int y = 0; y < image.height; ++y) {
+    double row = 0.0;
+    for (int x = 0; x < image.width; ++x) {
+      const Rgbd value = texel(image, x, y);
+      row += std::max({value.x, value.y, value.z});
+    }
+    sum += row;
+  }
+  return sum / (static_cast<double>(image.width) * image.height);
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,267 @@
+// Textures of OBJ and glTF: read, placed, shared, refused by name.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mtl_map.hpp"
+#include "raykiln/image/encode.hpp"
+#include "raykiln/scene/surface_textures.hpp"
+#include "support/io/import_text.hpp"
+
+namespace raykiln::render::test {
+namespace {
+
+using Code = ImportErrorCode;
+using Warn = ImportWarningCode;
+
+/// Two triangles with coordinates; v counts upwards.
+const std::string kObj =
+    "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1 0\n"
+    "usemtl a\nf 1/1 2/2 3/3\nf 1/1 3/-2 4/-1\n";
+
+std::string png() {
+  const Image image{.width = 2, .height = 1, .rgb = {0, 0, 0, 1, 1, 1}};
+  const auto bytes = std::get<Bytes>(encode_png(image, 0.0));
+  return {bytes.begin(), bytes.end()};
+}
+
+ImportedScene obj_scene(const std::string& mtl, const std::string& obj = kObj) {
+  return expect_scene({{"a.obj", obj}, {"m.mtl", mtl}, {"tex/x.png", png()}});
+}
+
+TEST(ObjTexture, ColourAndCoordinates) {
+  const auto imported = obj_scene("newmtl a\nKd 0.5 0.5 0.5\nmap_Kd tex\\x.png\n");
+  ASSERT_NE(imported.scene.textures, nullptr);
+  const SurfaceTextures& textures = *imported.scene.textures;
+  ASSERT_EQ(textures.images.size(), 1U);
+  EXPECT_EQ(textures.images[0].name, "tex/x.png");
+  EXPECT_EQ(textures.images[0].width, 2);
+  EXPECT_EQ(textures.images[0].srgb8, (std::vector<std::uint8_t>{0, 0, 0, 255, 255, 255}));
+  const UvSet& set = textures.uv_sets[0];
+  ASSERT_EQ(set.corners.size(), 2U);
+  EXPECT_EQ(set.coordinates[set.corners[0][2]], Vec2f(1.0F, 0.25F));  // turned to count downwards
+  EXPECT_EQ(set.coordinates[set.corners[1][1]], Vec2f(1.0F, 0.25F));
+  EXPECT_EQ(set.coordinates[set.corners[1][2]], Vec2f(0.0F, 0.0F));
+  const MaterialTextures& used = textures.materials[imported.scene.mesh.material_ids[0]];
+  EXPECT_TRUE(used.base.used());
+  EXPECT_FALSE(used.emission.used());
+  EXPECT_EQ(imported.scene.materials[imported.scene.mesh.material_ids[0]].diffuse, Rgb(0.5F));
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 0U);
+}
+
+TEST(ObjTexture, EmissionIsOneUnlessKeSaysOtherwise) {
+  const auto emission = [](const std::string& ke) {
+    const auto imported = obj_scene("newmtl a\n" + ke + "map_Ke tex/x.png\n");
+    return imported.scene.materials[imported.scene.mesh.material_ids[0]].emission;
+  };
+  EXPECT_EQ(emission(""), Rgb(1.0F));
+  EXPECT_EQ(emission("Ke 3 2 1\n"), Rgb(3, 2, 1));
+}
+
+TEST(ObjTexture, SceneWithoutTexturesHasNoCoordinates) {
+  EXPECT_EQ(obj_scene("newmtl a\nKd 1 1 1\n").scene.textures, nullptr);
+  // A texture of a material that no face has is nothing either.
+  EXPECT_EQ(obj_scene("newmtl a\nKd 1 1 1\nnewmtl b\nmap_Kd tex/x.png\n").scene.textures, nullptr);
+}
+
+TEST(ObjTexture, OnePictureForTwoMaterialsIsHeldOnce) {
+  const auto imported = obj_scene(
+      "newmtl a\nmap_Kd tex/x.png\nmap_Ke tex/x.png\nnewmtl b\nmap_Kd tex/x.png\n",
+      kObj + "usemtl b\nf 1/1 2/2 4/4\n");
+  EXPECT_EQ(imported.scene.textures->images.size(), 1U);
+}
+
+TEST(ObjTexture, FacesWithoutCoordinatesAreListed) {
+  const auto imported = obj_scene("newmtl a\nmap_Kd tex/x.png\n",
+                                  kObj + "f 1 2 4\nf 1/9 2/9 4/9\nf 1/1 2/2 4\n");
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 3U);
+  const UvSet& set = imported.scene.textures->uv_sets[0];
+  EXPECT_EQ(set.corners[3][0], kNoUv);
+  EXPECT_EQ(set.corners[4][2], kNoUv);
+}
+
+// Dropping a flat triangle in front moves the coordinates along.
+TEST(ObjTexture, DroppedTrianglesTakeTheirCoordinatesAlong) {
+  std::string obj = kObj;
+  obj.insert(obj.find("usemtl a\n") + 9, "f 1/1 1/1 2/2\nf 1 2 4\n");
+  const auto imported = obj_scene("newmtl a\nmap_Kd tex/x.png\n", obj);
+  const UvSet& set = imported.scene.textures->uv_sets[0];
+  ASSERT_EQ(imported.scene.mesh.triangles.size(), 3U);
+  EXPECT_EQ(set.corners[0][0], kNoUv);
+  EXPECT_EQ(set.coordinates[set.corners[1][2]], Vec2f(1.0F, 0.25F));
+  EXPECT_EQ(set.coordinates[set.corners[2][2]], Vec2f(0.0F, 0.0F));
+}
+
+TEST(ObjTexture, MissingAndUnreadableOnesAreNamed) {
+  const auto mtl = [](const std::string& name) { return "newmtl a\nKd 1 1 1\nmap_Kd " + name + "\n"; };
+  const ImportError missing = expect_error({{"a.obj", kObj}, {"m.mtl", mtl("y z.png")}});
+  EXPECT_EQ(missing.code, Code::kFileMissing);
+  EXPECT_NE(missing.message.find("'y z.png'"), std::string::npos) << missing.message;
+  EXPECT_EQ(missing.file, "m.mtl");
+  EXPECT_EQ(missing.where, "line 3");
+  const ImportError damaged = expect_error({{"a.obj", kObj}, {"m.mtl", mtl("x.png")}, {"x.png", "II*"}});
+  EXPECT_EQ(damaged.code, Code::kInvalidPicture);
+  EXPECT_NE(damaged.message.find("'x.png'"), std::string::npos) << damaged.message;
+  for (const char* name : {"y.png", "x.png"}) {
+    const auto imported = expect_scene({{"a.obj", kObj}, {"m.mtl", mtl(name)}, {"x.png", "II*"},
+                                        {"raykiln.json", R"({"allow_missing": true})"}});
+    EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 1U);
+    EXPECT_EQ(imported.scene.textures, nullptr);
+  }
+}
+
+TEST(ObjTexture, MemoryIsBounded) {
+  ImportOptions options;
+  options.limits.max_texture_bytes = 5;
+  const Texts files{{"a.obj", kObj}, {"m.mtl", "newmtl a\nmap_Kd x.png\n"}, {"x.png", png()}};
+  EXPECT_EQ(expect_error(files, options).code, Code::kLimitExceeded);
+  options.limits.max_texture_bytes = 6;
+  EXPECT_NE(expect_scene(files, options).scene.textures, nullptr);
+  options.limits.max_texture_texels = 1;
+  EXPECT_EQ(expect_error(files, options).code, Code::kInvalidPicture);
+}
+
+TEST(MtlMap, OptionsAndNames) {
+  const auto read = [](const char* text) { return io::read_mtl_map(text); };
+  EXPECT_EQ(read(" my texture.png ").file, "my texture.png");
+  EXPECT_EQ(read("-blendu on -mm 0 1 -bm 2 x.png").file, "x.png");
+  EXPECT_EQ(read("-blendu on -mm 0 1 -bm 2 x.png").ignored.size(), 3U);
+  EXPECT_EQ(read("-odd.png").file, "-odd.png");
+  EXPECT_EQ(read("-s 2 2.png").file, "2.png");
+  EXPECT_EQ(read("-clamp on x.png").use.wrap_u, TextureWrap::kClamp);
+  const io::MtlMap map = read("-s 2 3 1 -o 0.25 0.5 x.png");
+  EXPECT_EQ(map.file, "x.png");
+  EXPECT_EQ(map.use.u_row, Vec3d(2, 0, 0.25));
+  // v_up 0.1 becomes 0.8; counted downwards 0.9 becomes 0.2.
+  EXPECT_NEAR(dot(map.use.v_row, Vec3d(0, 0.9, 1)), 0.2, 1e-15);
+}
+
+// ---- glTF, written out: one triangle of three vertices with two sets of coordinates.
+
+std::string base64(const std::string& bytes) {
+  static constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += i + k <= bytes.size() ? kDigits[group >> (18U - 6U * static_cast<unsigned>(k)) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+std::string floats(const std::vector<float>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+/// `material` and the rest as members of the document; image 0 is embedded in the buffer.
+Texts gltf(const std::string& material, const std::string& more) {
+  const std::string picture = png();
+  const std::string buffer = floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + floats({0, 0, 1, 0, 0, 1}) +
+                             floats({0.5F, 0.5F, 0.25F, 0.5F, 0.5F, 0.25F}) + picture;
+  const std::string size = std::to_string(buffer.size());
+  return {{"a.gltf",
+           R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"material": 0,
+             "attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2}}]}],
+             "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                           {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+                           {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"}],
+             "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+                             {"buffer": 0, "byteOffset": 60, "byteLength": 24},
+                             {"buffer": 0, "byteOffset": 84, "byteLength": )" +
+               std::to_string(picture.size()) + R"(}],
+             "buffers": [{"byteLength": )" + size + R"(, "uri": "data:application/octet-stream;base64,)" +
+               base64(buffer) + R"("}], "materials": [)" + material + "], " + more + "}"},
+          {"x y.png", picture}};
+}
+
+constexpr const char* kImages =
+    R"("images": [{"bufferView": 3, "mimeType": "image/png"}, {"uri": "x%20y.png"}, {"uri": "nowhere.png"},
+                  {"uri": "https://example.org/a.png"}],
+       "samplers": [{"wrapS": 33648, "wrapT": 33071, "magFilter": 9728}],
+       "textures": [{"source": 0}, {"source": 1, "sampler": 0}, {"source": 2}, {"source": 3}, {}])";
+
+std::string base(const std::string& info) {
+  return R"({"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorTexture": )" + info + "}}";
+}
+
+TEST(GltfTexture, EmbeddedAndBesideTheScene) {
+  for (const int texture : {0, 1}) {
+    const auto imported =
+        expect_scene(gltf(base(R"({"index": )" + std::to_string(texture) + "}"), kImages));
+    ASSERT_NE(imported.scene.textures, nullptr);
+    const SurfaceTextures& textures = *imported.scene.textures;
+    ASSERT_EQ(textures.images.size(), 1U);
+    EXPECT_EQ(textures.images[0].srgb8.size(), 6U);
+    const TextureUse& use = textures.materials[0].base;
+    EXPECT_EQ(use.wrap_u, texture == 0 ? TextureWrap::kRepeat : TextureWrap::kMirror);
+    EXPECT_EQ(use.wrap_v, texture == 0 ? TextureWrap::kRepeat : TextureWrap::kClamp);
+    EXPECT_EQ(use.filter, texture == 0 ? TextureFilter::kBilinear : TextureFilter::kNearest);
+    EXPECT_EQ(textures.uv_sets[0].coordinates,
+              (std::vector<Vec2f>{{0, 0}, {1, 0}, {0, 1}}));
+    EXPECT_TRUE(textures.uv_sets[1].coordinates.empty());
+    EXPECT_EQ(textures.materials[0].specular_tint, Rgb(0.0F));  // a dielectric reflects white
+  }
+}
+
+TEST(GltfTexture, TransformAndSecondSet) {
+  const auto imported = expect_scene(gltf(
+      base(R"({"index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform":
+               {"offset": [0, 1], "rotation": 1.57079632679, "scale": [0.5, 0.5]}}})"),
+      std::string(R"("extensionsRequired": ["KHR_texture_transform"], )") + kImages));
+  const TextureUse& use = imported.scene.textures->materials[0].base;
+  EXPECT_EQ(use.uv_set, 1);
+  // The example of the extension: the lower left quarter of the picture.
+  const auto moved = [&](double u, double v) {
+    return Vec2f(dot(use.u_row, Vec3d(u, v, 1)), dot(use.v_row, Vec3d(u, v, 1)));
+  };
+  for (const auto& [u, v, x, y] : {std::array{0.0, 0.0, 0.0, 1.0}, {1.0, 0.0, 0.0, 0.5},
+                                   {0.0, 1.0, 0.5, 1.0}, {1.0, 1.0, 0.5, 0.5}}) {
+    EXPECT_NEAR(moved(u, v).x, x, 1e-6);
+    EXPECT_NEAR(moved(u, v).y, y, 1e-6);
+  }
+  EXPECT_EQ(imported.scene.textures->uv_sets[1].coordinates[1], Vec2f(0.25F, 0.5F));
+  EXPECT_TRUE(imported.scene.textures->uv_sets[0].coordinates.empty());
+}
+
+TEST(GltfTexture, MetalsAreTintedAndEmissionIsTextured) {
+  const auto imported = expect_scene(gltf(
+      R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "emissiveFactor": [1, 0.5, 0],
+          "emissiveTexture": {"index": 1}})", kImages));
+  const MaterialTextures& used = imported.scene.textures->materials[0];
+  EXPECT_EQ(used.specular_tint, Rgb(1.0F));
+  EXPECT_TRUE(used.emission.used());
+  EXPECT_EQ(imported.scene.materials[0].emission, Rgb(1, 0.5F, 0));
+  EXPECT_EQ(imported.scene.textures->images.size(), 2U);
+}
+
+TEST(GltfTexture, WhatCannotBeHadIsNamed) {
+  const auto refused = [](const std::string& info) { return expect_error(gltf(base(info), kImages)); };
+  EXPECT_EQ(refused(R"({"index": 2})").code, Code::kFileMissing);
+  EXPECT_NE(refused(R"({"index": 2})").message.find("nowhere.png"), std::string::npos);
+  EXPECT_EQ(refused(R"({"index": 3})").code, Code::kFileMissing);
+  EXPECT_EQ(refused(R"({"index": 4})").code, Code::kInvalidPicture);
+  EXPECT_EQ(refused(R"({"index": 5})").code, Code::kIndexOutOfRange);
+  EXPECT_EQ(refused(R"({"index": 0, "texCoord": 2})").code, Code::kInvalidValue);
+  EXPECT_EQ(refused("{}").code, Code::kMissingField);
+  EXPECT_EQ(refused("7").code, Code::kWrongType);
+  Texts files = gltf(base(R"({"index": 2})"), kImages);
+  files["raykiln.json"] = R"({"allow_missing": true})";
+  const auto imported = expect_scene(files);
+  EXPECT_EQ(imported.scene.textures, nullptr);
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 1U);
+}
+
+TEST(GltfTexture, ATextureOfBlackIsNotRead) {
+  const auto imported = expect_scene(gltf(
+      R"({"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "baseColorTexture": {"index": 2}},
+          "emissiveTexture": {"index": 2}})", kImages));
+  EXPECT_EQ(imported.scene.textures, nullptr);
+}
+
+}  // namespace
+}  // namespace raykiln::render::test

@@ -1,0 +1,119 @@
+// Pictures with textures: against the same scene without, and closed forms.
+#include <gtest/gtest.h>
+
+#include "raykiln/sampling/warp.hpp"
+#include "raykiln/scene/surface_textures.hpp"
+#include "support/scene_pieces.hpp"
+
+namespace raykiln::render {
+namespace {
+
+using support::diffuse_material;
+using support::Estimate;
+using support::SceneBuilder;
+
+/// The unit square of z = 0 in two triangles, textured from (0, 0) at its upper left corner.
+SceneBuilder square_with(const Material& material, TextureImage image, bool emission) {
+  SceneBuilder b;
+  b.quad({Vec3f(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, b.material(material));
+  SurfaceTextures textures;
+  textures.images.push_back(std::move(image));
+  textures.uv_sets[0].coordinates = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  textures.uv_sets[0].corners = {{0, 1, 2}, {0, 2, 3}};
+  textures.materials.resize(1);
+  TextureUse& use = emission ? textures.materials[0].emission : textures.materials[0].base;
+  use.image = 0;
+  use.wrap_u = use.wrap_v = TextureWrap::kClamp;
+  use.filter = TextureFilter::kNearest;
+  b.scene().textures = std::make_shared<const SurfaceTextures>(std::move(textures));
+  return b;
+}
+
+/// Red, green / blue, white.
+TextureImage four() {
+  return {.name = "", .width = 2, .height = 2,
+          .srgb8 = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}, .linear = {}};
+}
+
+RenderSettings square(int side, int depth) {
+  RenderSettings settings;
+  settings.width = settings.height = side;
+  settings.max_depth = depth;
+  return settings;
+}
+
+TEST(Textures, ColourIsWhereThePictureHasIt) {
+  SceneBuilder b = square_with(diffuse_material(Rgb(0.5F)), four(), false);
+  b.scene().background = Rgb(1.0F);
+  const std::array<std::pair<Vec3f, Rgbd>, 4> places{{{{0.25F, 0.75F, 0}, {0.5, 0, 0}},
+                                                      {{0.75F, 0.75F, 0}, {0, 0.5, 0}},
+                                                      {{0.25F, 0.25F, 0}, {0, 0, 0.5}},
+                                                      {{0.75F, 0.25F, 0}, {0.5, 0.5, 0.5}}}};
+  for (const auto& [place, truth] : places) {
+    b.scene().cameras.clear();
+    b.camera(place + Vec3f(0.1F, 0.2F, 2.0F), place, {0, 1, 0}, 1e-3);
+    const Estimate e = support::estimate(support::render_all(*b.prepare(), square(2, 1), 4));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(e.mean[c], truth[c], 1e-6);
+  }
+}
+
+TEST(Textures, AWhiteOneChangesNotABit) {
+  SceneBuilder plain = support::mixed_room(), white = support::mixed_room();
+  SurfaceTextures textures;
+  textures.images.push_back({.name = "", .width = 2, .height = 1,
+                             .srgb8 = {255, 255, 255, 255, 255, 255}, .linear = {}});
+  textures.uv_sets[1].coordinates = {{0.3F, 0.2F}, {5.0F, 0.1F}, {0.7F, -3.0F}};
+  textures.uv_sets[1].corners.assign(white.scene().mesh.triangles.size(), {0, 1, 2});
+  for (std::size_t i = 0; i < white.scene().materials.size(); ++i) {
+    MaterialTextures used;
+    used.base.image = used.emission.image = 0;
+    used.base.uv_set = used.emission.uv_set = 1;
+    used.specular_tint = Rgb(0.3F);
+    textures.materials.push_back(used);
+  }
+  white.scene().textures = std::make_shared<const SurfaceTextures>(std::move(textures));
+  Film a(16, 16), b(16, 16);
+  merge(a, support::render_all(*plain.prepare(), square(16, 5), 4));
+  merge(b, support::render_all(*white.prepare(), square(16, 5), 4));
+  EXPECT_EQ(a.resolve().rgb, b.resolve().rgb);
+}
+
+// A square emitter whose picture shines in its upper right quarter alone is a square emitter of that
+// quarter, whichever way it is found.
+TEST(Textures, AnEmitterIsBrightWhereItsPictureIs) {
+  const auto lit = [](SceneBuilder b, bool sampling) {
+    b.quad({Vec3f(-4, -4, -1), {4, -4, -1}, {4, 4, -1}, {-4, 4, -1}},
+           b.material(diffuse_material(Rgb(0.8F))));
+    b.camera({-2, -2, -0.2F}, {0.5F, 0.5F, -1.0F}, {0, 0, 1}, 0.5F);
+    RenderSettings settings = square(8, 1);
+    settings.emitter_sampling = sampling;
+    return support::estimate(support::render_all(*b.prepare(), settings, 512));
+  };
+  TextureImage quarter = four();
+  quarter.srgb8 = {0, 0, 0, 255, 255, 255, 0, 0, 0, 0, 0, 0};
+  const Material lamp = diffuse_material(Rgb(0.0F), {6.0F, 3.0F, 1.0F});
+  SceneBuilder small;
+  small.quad({Vec3f(0.5F, 0.5F, 0), {1, 0.5F, 0}, {1, 1, 0}, {0.5F, 1, 0}}, small.material(lamp));
+  const Estimate truth = lit(small, true);
+  for (const bool sampling : {true, false}) {
+    const Estimate e = lit(square_with(lamp, quarter, true), sampling);
+    EXPECT_NEAR(e.mean.x, truth.mean.x, 4.0 * std::hypot(e.standard_error, truth.standard_error) * 3)
+        << sampling;
+    EXPECT_GT(e.mean.x, 0.01);
+    EXPECT_NEAR(e.mean.y / e.mean.x, 0.5, 1e-6);
+  }
+}
+
+// A picture that is black all over makes a dark scene, and nothing that is not finite.
+TEST(Textures, ABlackEmitterIsDark) {
+  TextureImage black = four();
+  black.srgb8.assign(12, 0);
+  SceneBuilder b = square_with(diffuse_material(Rgb(0.5F), Rgb(3.0F)), black, true);
+  b.camera({0.5F, 0.5F, 2.0F}, {0.5F, 0.5F, 0.0F}, {0, 1, 0}, 0.5F);
+  const TileResult result = support::render_all(*b.prepare(), square(4, 3), 4);
+  EXPECT_EQ(support::estimate(result).mean, Rgbd(0.0));
+  EXPECT_EQ(result.stats.non_finite, 0U);
+}
+
+}  // namespace
+}  // namespace raykiln::render

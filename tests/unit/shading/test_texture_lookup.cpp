@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "raykiln/math/srgb.hpp"
+#include "raykiln/shading/texture_lookup.hpp"
+
+namespace raykiln::render {
+namespace {
+
+/// Width by height texels; texel i is i in all channels.
+TextureImage numbered(int width, int height) {
+  TextureImage image{.name = "", .width = width, .height = height, .srgb8 = {}, .linear = {}};
+  for (int i = 0; i < width * height; ++i) {
+    image.linear.insert(image.linear.end(), 3, static_cast<float>(i));
+  }
+  return image;
+}
+
+double at(const TextureImage& image, const TextureUse& use, double u, double v) {
+  return texture_value(image, use, u, v).x;
+}
+
+TextureUse with_wrap(TextureWrap wrap, TextureFilter filter = TextureFilter::kBilinear) {
+  TextureUse use;
+  use.wrap_u = use.wrap_v = wrap;
+  use.filter = filter;
+  return use;
+}
+
+TEST(Texture, MiddlesOfTexelsAreTheTexelsAndBetweenIsLinear) {
+  const TextureImage image = numbered(4, 2);
+  const TextureUse use = with_wrap(TextureWrap::kClamp);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(at(image, use, (i % 4 + 0.5) / 4, (i / 4 + 0.5) / 2), i);
+  }
+  EXPECT_DOUBLE_EQ(at(image, use, 1.75 / 4, 0.25), 1.25);
+  EXPECT_DOUBLE_EQ(at(image, use, 0.5, 0.5), 0.25 * (1 + 2 + 5 + 6));
+}
+
+TEST(Texture, WrapModesAtTheEdges) {
+  const TextureImage image = numbered(4, 1);
+  const double edge = 0.125;  // half a texel
+  EXPECT_EQ(at(image, with_wrap(TextureWrap::kClamp), -5.0, 0.5), 0.0);
+  EXPECT_EQ(at(image, with_wrap(TextureWrap::kClamp), 7.0, 0.5), 3.0);
+  EXPECT_DOUBLE_EQ(at(image, with_wrap(TextureWrap::kRepeat), 0.0, 0.5), 1.5);  // 3 and 0
+  EXPECT_DOUBLE_EQ(at(image, with_wrap(TextureWrap::kMirror), 0.0, 0.5), 0.0);  // 0 and 0
+  EXPECT_DOUBLE_EQ(at(image, with_wrap(TextureWrap::kMirror), 1.0, 0.5), 3.0);
+  EXPECT_DOUBLE_EQ(at(image, with_wrap(TextureWrap::kRepeat), -3.0 + edge, 0.5), 0.0);
+  EXPECT_DOUBLE_EQ(at(image, with_wrap(TextureWrap::kMirror), 1.0 + edge, 0.5), 3.0);
+  EXPECT_DOUBLE_EQ(at(image, with_wrap(TextureWrap::kMirror), -edge, 0.5), 0.0);
+  EXPECT_DOUBLE_EQ(at(image, with_wrap(TextureWrap::kMirror), 4.0 + 3 * edge, 0.5), 1.0);
+}
+
+TEST(Texture, NearestTakesTheTexelItself) {
+  const TextureImage image = numbered(4, 1);
+  for (const TextureWrap wrap : {TextureWrap::kRepeat, TextureWrap::kMirror, TextureWrap::kClamp}) {
+    const TextureUse use = with_wrap(wrap, TextureFilter::kNearest);
+    EXPECT_EQ(at(image, use, 0.26, 0.5), 1.0);
+    EXPECT_EQ(at(image, use, 0.99, 0.5), 3.0);
+    EXPECT_EQ(at(image, use, 0.0, 0.0), 0.0);
+  }
+  EXPECT_EQ(at(image, with_wrap(TextureWrap::kRepeat, TextureFilter::kNearest), -0.01, 0.5), 3.0);
+  EXPECT_EQ(at(image, with_wrap(TextureWrap::kMirror, TextureFilter::kNearest), -0.01, 0.5), 0.0);
+}
+
+TEST(Texture, AnyCoordinateIsSafe) {
+  const TextureImage image = numbered(3, 5);
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const TextureWrap wrap : {TextureWrap::kRepeat, TextureWrap::kMirror, TextureWrap::kClamp}) {
+    for (const TextureFilter filter : {TextureFilter::kBilinear, TextureFilter::kNearest}) {
+      for (const double u : {-1e-300, -1e-17, 1.0, 2.0, 1e18, -1e300, inf, -inf, std::nan("")}) {
+        const double value = at(image, with_wrap(wrap, filter), u, -u);
+        EXPECT_TRUE(value >= 0.0 && value <= 14.0) << u;
+      }
+    }
+  }
+}
+
+TEST(Texture, BytesAreSrgbAndFilteredInLinearLight) {
+  TextureImage image{.name = "", .width = 2, .height = 1, .srgb8 = {0, 128, 255, 255, 128, 0}, .linear = {}};
+  const TextureUse use = with_wrap(TextureWrap::kClamp);
+  const Rgbd left = texture_value(image, use, 0.25, 0.5);
+  EXPECT_EQ(left.x, 0.0);
+  EXPECT_NEAR(left.y, linear_of_srgb(128.0 / 255.0), 1e-7);
+  EXPECT_EQ(left.z, 1.0);
+  EXPECT_DOUBLE_EQ(texture_value(image, use, 0.5, 0.5).x, 0.5);
+  EXPECT_DOUBLE_EQ(mean_largest_channel(image), 1.0);
+}
+
+/// One triangle whose corners have the coordinates (0, 0), (1, 0), (0, 1).
+SurfaceTextures one_triangle(TextureImage image) {
+  SurfaceTextures textures;
+  textures.images.push_back(std::move(image));
+  textures.uv_sets[0].coordinates = {{0, 0}, {1, 0}, {0, 1}};
+  textures.uv_sets[0].corners = {{0, 1, 2}, {0, 1, kNoUv}};
+  return textures;
+}
+
+TEST(Texture, CoordinatesAreInterpolatedAndTransformed) {
+  const SurfaceTextures textures = one_triangle(numbered(8, 8));
+  TextureUse use = with_wrap(TextureWrap::kClamp, TextureFilter::kNearest);
+  use.image = 0;
+  const auto value = [&](double u, double v) { return texture_value(textures, use, {0, u, v}).x; };
+  EXPECT_EQ(value(0.8, 0.1), 6.0);        // column 6, row 0
+  EXPECT_EQ(value(0.1, 0.8), 6.0 * 8.0);  // row 6
+  use.u_row = {0.5, 0.0, 0.5};
+  use.v_row = {0.0, -1.0, 1.0};
+  EXPECT_EQ(value(0.8, 0.1), 7.0 * 8.0 + 7.0);  // u 0.9, v 0.9
+}
+
+TEST(Texture, TrianglesWithoutCoordinatesAreWhite) {
+  const SurfaceTextures textures = one_triangle(numbered(2, 2));
+  TextureUse use;
+  use.image = 0;
+  EXPECT_EQ(texture_value(textures, use, {1, 0.2, 0.2}), Rgbd(1.0));  // a corner without
+  EXPECT_EQ(texture_value(textures, use, {7, 0.2, 0.2}), Rgbd(1.0));  // beyond the set
+  use.uv_set = 1;
+  EXPECT_EQ(texture_value(textures, use, {0, 0.2, 0.2}), Rgbd(1.0));
+}
+
+TEST(Texture, PaintMultipliesColourAndEmission) {
+  TextureImage image{.name = "", .width = 1, .height = 1, .srgb8 = {}, .linear = {0.5F, 0.25F, 1.0F}};
+  SurfaceTextures textures = one_triangle(image);
+  textures.materials.resize(1);
+  textures.materials[0].base.image = 0;
+  textures.materials[0].specular_tint = {1.0F, 0.5F, 0.0F};
+  textures.materials[0].emission.image = 0;
+  Material material, painted;
+  material.diffuse = Rgb(0.8F);
+  material.specular = Rgb(0.2F);
+  material.emission = Rgb(4.0F);
+  material.transparent = 0.25F;
+  paint(textures, material, 0, {0, 0.1, 0.1}, painted);
+  EXPECT_EQ(painted.diffuse, Rgb(0.4F, 0.2F, 0.8F));
+  EXPECT_FLOAT_EQ(painted.specular.x, 0.1F);
+  EXPECT_FLOAT_EQ(painted.specular.y, 0.2F * 0.625F);
+  EXPECT_FLOAT_EQ(painted.specular.z, 0.2F);
+  EXPECT_EQ(painted.emission, Rgb(2.0F, 1.0F, 4.0F));
+  EXPECT_EQ(painted.transparent, 0.25F);
+  EXPECT_EQ(emission_factor(textures, 0, {0, 0.1, 0.1}), Rgbd(0.5, 0.25, 1.0));
+  EXPECT_EQ(emission_factor(textures, 3, {0, 0.1, 0.1}), Rgbd(1.0));
+}
+
+}  // namespace
+}  // namespace raykiln::render
