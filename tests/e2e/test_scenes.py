@@ -45,6 +45,20 @@ def test_multipart_id_is_that_of_the_sorted_list(api):
     assert api.upload_files(backwards, expect=(200,)).json()["id"] == scene["id"]
 
 
+def test_a_missing_texture_is_named_or_left_out_when_asked(launch):
+    api = launch()
+    files = scenes.box_files("texture")
+    files["box.mtl"] = files["box.mtl"].replace("newmtl ", "newmtl unused\nmap_Kd gone.png\nnewmtl ", 1)
+    data = scenes.zip_of(files)
+    assert "gone.png" in api.upload(data, expect=(422,)).json()["detail"]
+    problem(api.upload(data, params={"allow_missing": "yes"}, expect=(400,)), 400, "invalid_parameter")
+    scene = api.upload(data, params={"allow_missing": "true"}, expect=(201,)).json()
+    assert [w["count"] for w in scene["warnings"] if w["code"] == "ignored_texture"] == [1]
+    # What was taken once stays what it is: for jobs, and for uploads without the parameter.
+    api.upload(data, expect=(200,))
+    assert api.wait(api.job(scene["id"]))["state"] == "completed"
+
+
 def test_put_of_the_right_bytes(api):
     data = scenes.box_zip("put")
     digest = hashlib.sha256(data).hexdigest()

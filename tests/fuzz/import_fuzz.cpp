@@ -161,6 +161,18 @@ GltfBuilder full_gltf() {
   builder.root["nodes"].push_back({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1}}, {"mesh", 0}});
   builder.root["nodes"][2]["extensions"]["KHR_lights_punctual"]["light"] = 0;
   builder.root["scenes"][0]["nodes"] = {0, 1};
+  const int uv = builder.accessor(builder.view<float>({0, 0, 1, 0, 0, 1, 1, 1}), 5126, 4, "VEC2");
+  builder.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = uv;
+  const std::vector<std::uint8_t> picture(kPicture.begin(), kPicture.end());
+  builder.root["images"] = {{{"bufferView", builder.view<std::uint8_t>(picture)}},
+                            {{"uri", "data:image/png;base64,AAAA"}}};
+  builder.root["samplers"] = {{{"wrapS", 33071}, {"magFilter", 9728}}};
+  builder.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  auto& material = builder.root["materials"][0];
+  material["pbrMetallicRoughness"]["baseColorTexture"] = {
+      {"index", 0}, {"texCoord", 0},
+      {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"rotation", 0.5}, {"scale", {2, 2}}}}}}};
+  material["emissiveTexture"]["index"] = 0;
   return builder;
 }
 
@@ -169,6 +181,9 @@ TEST(Fuzz, Obj) {
 }
 TEST(Fuzz, Mtl) {
   fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}, {"x.png", kPicture}}, "m.mtl", {kMtl, kObj});
+}
+TEST(Fuzz, Picture) {
+  fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}, {"x.png", kPicture}}, "x.png", {kPicture});
 }
 TEST(Fuzz, Sidecar) {
   fuzz({{"a.obj", kObj}, {"m.mtl", kMtl}, {"x.png", kPicture}, {"raykiln.json", kSidecar}}, "raykiln.json",

@@ -38,7 +38,7 @@ class FakeIntake final : public server::SceneIntake {
  public:
   server::Result<server::LoadedScene> load(server::SceneKind,
                                            const std::vector<server::BlobFile>& files,
-                                           std::stop_token) override {
+                                           server::MissingTextures, std::stop_token) override {
     ++loads;
     server::SceneReport report;
     report.format = "obj";

@@ -30,16 +30,27 @@ std::string size_text(const OIIO::ImageSpec& spec) {
   return std::to_string(spec.width) + " x " + std::to_string(spec.height);
 }
 
-std::optional<PictureFileError> check(const OIIO::ImageSpec& spec, std::uint64_t max_pixels) {
+/// PNG and JPEG of 8 bits stay as they are, everything else becomes floats.
+bool stays_bytes(PictureFormat format, const OIIO::ImageSpec& spec) {
+  const bool display = format == PictureFormat::kPng || format == PictureFormat::kJpeg;
+  return display && spec.format == OIIO::TypeDesc::UINT8;
+}
+
+std::optional<PictureFileError> check(PictureFormat format, const OIIO::ImageSpec& spec,
+                                      const PictureFileLimits& limits) {
   if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.deep) {
-    return PictureFileError{"it holds no flat picture"};
+    return PictureFileError{.message = "it holds no flat picture"};
   }
   const auto pixels =
       static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
-  if (pixels > max_pixels || spec.nchannels > kMostChannels) {
-    return PictureFileError{"it is too large: " + size_text(spec) + ", " +
+  if (pixels > limits.max_pixels || spec.nchannels > kMostChannels) {
+    return PictureFileError{.message = "it is too large: " + size_text(spec) + ", " +
                             std::to_string(spec.nchannels) + " channels; at most " +
-                            std::to_string(max_pixels) + " pixels are read"};
+                            std::to_string(limits.max_pixels) + " pixels are read"};
+  }
+  const std::uint64_t bytes = 3 * pixels * (stays_bytes(format, spec) ? 1 : sizeof(float));
+  if (bytes > limits.max_bytes) {
+    return PictureFileError{.message = "it is too large: " + size_text(spec), .no_room = true};
   }
   return std::nullopt;
 }
@@ -74,13 +85,11 @@ bool read_pixels(OIIO::ImageInput& input, const std::array<std::size_t, 3>& chan
 
 bool read_values(OIIO::ImageInput& input, const std::array<std::size_t, 3>& channels,
                  PictureFile& picture) {
-  const bool display =
-      picture.format == PictureFormat::kPng || picture.format == PictureFormat::kJpeg;
-  if (display && input.spec().format == OIIO::TypeDesc::UINT8) {
+  if (stays_bytes(picture.format, input.spec())) {
     return read_pixels(input, channels, OIIO::TypeDesc::UINT8, picture.srgb8);
   }
   if (!read_pixels(input, channels, OIIO::TypeDesc::FLOAT, picture.linear)) return false;
-  if (!display) return true;
+  if (picture.format == PictureFormat::kExr || picture.format == PictureFormat::kHdr) return true;
   for (float& value : picture.linear) {
     value = static_cast<float>(linear_of_srgb(static_cast<double>(value)));
   }
@@ -112,32 +121,32 @@ std::string_view name(PictureFormat format) {
 }
 
 std::variant<PictureFile, PictureFileError> read_picture_file(std::span<const std::uint8_t> bytes,
-                                                              std::uint64_t max_pixels) {
+                                                              const PictureFileLimits& limits) {
   const auto format = picture_format(bytes);
-  if (!format) return PictureFileError{"it is neither PNG nor JPEG, EXR or HDR"};
+  if (!format) return PictureFileError{.message = "it is neither PNG nor JPEG, EXR or HDR"};
   if (*format == PictureFormat::kPng && !png_is_whole(bytes)) {
-    return PictureFileError{"the PNG file is cut short or damaged"};
+    return PictureFileError{.message = "the PNG file is cut short or damaged"};
   }
   OIIO::Filesystem::IOMemReader source(bytes.data(), bytes.size());
   OIIO::ImageSpec wish;
   wish["oiio:UnassociatedAlpha"] = 1;  // else colours come multiplied by alpha
   const std::string kind(name(*format));
   const auto input = OIIO::ImageInput::create(kind);
-  if (!input || !input->set_ioproxy(&source)) return PictureFileError{"no reader for " + kind};
+  if (!input || !input->set_ioproxy(&source)) return PictureFileError{.message = "no reader for " + kind};
   OIIO::ImageSpec spec;
   if (!input->open("a." + kind, spec, wish)) {
-    return PictureFileError{"it cannot be read: " + input->geterror()};
+    return PictureFileError{.message = "it cannot be read: " + input->geterror()};
   }
-  if (auto error = check(input->spec(), max_pixels)) return *error;
+  if (auto error = check(*format, input->spec(), limits)) return *error;
   const auto channels = colour_channels(input->spec().channelnames);
-  if (!channels) return PictureFileError{"it has no channels R, G, B"};
+  if (!channels) return PictureFileError{.message = "it has no channels R, G, B"};
   PictureFile picture{.format = *format,
                       .width = input->spec().width,
                       .height = input->spec().height,
                       .srgb8 = {},
                       .linear = {}};
   if (!read_values(*input, *channels, picture)) {
-    return PictureFileError{"it cannot be read: " + input->geterror()};
+    return PictureFileError{.message = "it cannot be read: " + input->geterror()};
   }
   return picture;
 }

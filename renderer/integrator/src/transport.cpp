@@ -61,9 +61,10 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
 Switches switches_for(const Transport& transport) {
   const PathSettings& s = transport.settings;
   if (!(s.left_out - kFolded).empty()) return kReduced;
+  if (s.simulated.contains(Effect::kTextures)) return kGeneral;
   const bool transmits =
       s.simulated.contains_any({Effect::kDiffuseTransmission, Effect::kRefraction});
-  if (transmits || s.bsdf.direction_sampling != DirectionSampling::kBsdf) return kGeneral;
+  if (transmits || s.bsdf.direction_sampling != DirectionSampling::kBsdf) return kPhong;
   if (s.simulated.contains_any({Effect::kGlossyLobes, Effect::kMirrors})) return kOpaque;
   if (transport.normals) return kMatte;
   return s.max_depth > 0 ? kFlatMatte : kDirectFlatMatte;

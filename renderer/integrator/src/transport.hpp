@@ -35,6 +35,7 @@ struct Transport {
 
 /// Parts of the code that an instance of the shading loop has.
 struct Switches {
+  bool textures = true;      ///< materials may change from point to point
   bool transmission = true;  ///< light may come from or go to the far side of a surface
   bool specular = true;      ///< Phong lobes
   bool normals = true;       ///< shading normals
@@ -45,11 +46,16 @@ struct Switches {
 // One instance a switch, each with one switch less than the one before; not one a combination.
 inline constexpr Switches kGeneral{};
 inline constexpr Switches kReduced{.reduced = true};
-inline constexpr Switches kOpaque{.transmission = false};
-inline constexpr Switches kMatte{.transmission = false, .specular = false};
-inline constexpr Switches kFlatMatte{.transmission = false, .specular = false, .normals = false};
-inline constexpr Switches kDirectFlatMatte{
-    .transmission = false, .specular = false, .normals = false, .bounces = false};
+inline constexpr Switches kPhong{.textures = false};
+inline constexpr Switches kOpaque{.textures = false, .transmission = false};
+inline constexpr Switches kMatte{.textures = false, .transmission = false, .specular = false};
+inline constexpr Switches kFlatMatte{
+    .textures = false, .transmission = false, .specular = false, .normals = false};
+inline constexpr Switches kDirectFlatMatte{.textures = false,
+                                           .transmission = false,
+                                           .specular = false,
+                                           .normals = false,
+                                           .bounces = false};
 
 /// The switches of the leanest instance that can simulate what is to be simulated.
 [[nodiscard]] Switches switches_for(const Transport& transport);

@@ -114,7 +114,7 @@ class VertexShader {
  private:
   const Material& material_at(const SurfacePoint& point, const Hit& hit) {
     const Material& material = scene_.scene.materials[point.material];
-    if (scene_.textures == nullptr) return material;
+    if (!kSwitches.textures || scene_.textures == nullptr) return material;
     paint(*scene_.textures, material, point.material,
           {hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v)}, sinks_.painted);
     return sinks_.painted;
@@ -209,7 +209,7 @@ class VertexShader {
     if (value.f_cos == Rgbd(0.0)) return;
     const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
     Rgbd radiance = sample.radiance;
-    if (scene_.textures != nullptr) {
+    if (kSwitches.textures && scene_.textures != nullptr) {
       radiance *= emission_factor(*scene_.textures, sample.point.material,
                                   {sample.triangle, sample.u, sample.v});
     }

@@ -40,6 +40,7 @@ struct ShadingLoop {
 // The instances, each compiled by itself.
 void shade_general(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
 void shade_reduced(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
+void shade_phong(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
 void shade_opaque(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
 void shade_matte(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);
 void shade_flat_matte(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks);

@@ -16,13 +16,32 @@ std::uint64_t bytes_of(const PictureFile& picture) {
   return picture.srgb8.size() + picture.linear.size() * sizeof(float);
 }
 
-/// Negative values become 0. False if one is not finite.
-bool make_usable(std::vector<float>& values) {
+struct Values {
+  std::uint64_t clamped = 0;
+  double scale = 1.0;
+};
+
+/// Brings values to [0, 1]: colours by clamping them, emission by a power of two. Nothing if one is not
+/// finite.
+std::optional<Values> make_usable(std::vector<float>& values, PictureRole role) {
+  Values result;
+  float largest = 1.0F;
   for (float& value : values) {
-    if (!std::isfinite(value)) return false;
-    value = std::max(value, 0.0F);
+    if (!std::isfinite(value)) return std::nullopt;
+    const bool outside = value < 0.0F || (value > 1.0F && role == PictureRole::kColour);
+    if (outside) {
+      ++result.clamped;
+      value = std::clamp(value, 0.0F, 1.0F);
+    }
+    largest = std::max(largest, value);
   }
-  return true;
+  if (largest > 1.0F) {
+    int exponent = 0;
+    (void)std::frexp(largest, &exponent);  // largest < 2^exponent
+    result.scale = std::ldexp(1.0, exponent);
+    for (float& value : values) value = std::ldexp(value, -exponent);
+  }
+  return result;
 }
 
 }  // namespace
@@ -42,60 +61,84 @@ std::optional<std::uint32_t> DraftTextures::unusable(ImportErrorCode code,
   return std::nullopt;
 }
 
+std::optional<std::uint32_t> DraftTextures::known(const std::string& name, PictureRole role) const {
+  const auto found = by_name_.find({name, role});
+  return found == by_name_.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::optional<std::uint32_t> DraftTextures::beside(const SceneFiles& files,
                                                    std::string_view reference,
-                                                   const PictureUser& user,
+                                                   const PictureUser& user, PictureRole role,
                                                    Diagnostics& diagnostics) {
   const auto found = find_beside(files, user.file, reference);
   if (!found) {
     return unusable(ImportErrorCode::kFileMissing, "there is no texture " + in_quotes(reference),
                     user, diagnostics);
   }
-  const std::string key = "file " + *found;
-  if (const auto known = by_key_.find(key); known != by_key_.end()) return known->second;
+  if (const auto id = known(*found, role)) return id;
   const auto bytes =
       read_whole(files, *found, diagnostics.limits().max_picture_file_bytes, diagnostics);
   if (!bytes) return std::nullopt;
-  return embedded(key, *bytes, user, diagnostics);
+  return embedded(*found, *bytes, user, role, diagnostics);
 }
 
-std::optional<std::uint32_t> DraftTextures::embedded(const std::string& key, std::string_view bytes,
-                                                     const PictureUser& user,
+// Also what is left out is remembered: decoding a damaged picture once for each of a hundred thousand
+// materials would take hours. PNG and JPEG of 8 bits are the same for both roles and held once.
+std::optional<std::uint32_t> DraftTextures::embedded(const std::string& name, std::string_view bytes,
+                                                     const PictureUser& user, PictureRole role,
                                                      Diagnostics& diagnostics) {
-  if (const auto known = by_key_.find(key); known != by_key_.end()) return known->second;
+  if (const auto id = known(name, role)) return id;
+  const PictureRole other =
+      role == PictureRole::kColour ? PictureRole::kEmission : PictureRole::kColour;
+  const auto twin = known(name, other);
+  const bool shared = twin && (*twin == kNoTexture || !images[*twin].srgb8.empty());
+  const auto id = shared ? twin : decode(name, bytes, user, role, diagnostics);
+  if (id) by_name_.emplace(std::pair(name, role), *id);
+  return id;
+}
+
+std::optional<std::uint32_t> DraftTextures::decode(const std::string& name, std::string_view bytes,
+                                                   const PictureUser& user, PictureRole role,
+                                                   Diagnostics& diagnostics) {
   const ImportLimits& limits = diagnostics.limits();
   if (!diagnostics.may_go_on()) return std::nullopt;
-  if (images.size() >= limits.max_textures) {
+  if (by_name_.size() >= limits.max_textures) {
     diagnostics.fail(ImportErrorCode::kLimitExceeded, "too many textures", user.file, user.where);
     return std::nullopt;
   }
-  auto read = read_picture_file({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
-                                limits.max_texture_texels);
-  const std::string label = "the texture " + in_quotes(key.substr(key.find(' ') + 1));
+  auto read = read_picture_file(
+      {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+      {.max_pixels = limits.max_texture_texels, .max_bytes = limits.max_texture_bytes - bytes_});
+  const std::string label = "the texture " + in_quotes(name);
   if (const auto* error = std::get_if<PictureFileError>(&read)) {
+    if (error->no_room) {
+      diagnostics.fail(ImportErrorCode::kLimitExceeded,
+                       "the textures take more than " + std::to_string(limits.max_texture_bytes) +
+                           " bytes together",
+                       user.file, user.where, "use smaller pictures");
+      return std::nullopt;
+    }
     return unusable(ImportErrorCode::kInvalidPicture, label + " cannot be used: " + error->message,
                     user, diagnostics);
   }
   auto& picture = std::get<PictureFile>(read);
-  if (!make_usable(picture.linear)) {
+  const auto values = make_usable(picture.linear, role);
+  if (!values) {
     return unusable(ImportErrorCode::kNotFinite, label + " has values that are not finite", user,
                     diagnostics);
   }
-  bytes_ += bytes_of(picture);
-  if (bytes_ > limits.max_texture_bytes) {
-    diagnostics.fail(ImportErrorCode::kLimitExceeded,
-                     "the textures take more than " + std::to_string(limits.max_texture_bytes) +
-                         " bytes together",
-                     user.file, user.where, "use smaller pictures");
-    return std::nullopt;
+  if (values->clamped > 0) {
+    diagnostics.warn(ImportWarningCode::kClampedValue, label + " has values that are clamped: negative "
+                     "ones, or colours above 1", user.file, user.where, values->clamped);
   }
+  bytes_ += bytes_of(picture);
   const auto id = static_cast<std::uint32_t>(images.size());
-  images.push_back({.name = clean_text(key.substr(key.find(' ') + 1)),
+  images.push_back({.name = clean_text(name),
                     .width = picture.width,
                     .height = picture.height,
                     .srgb8 = std::move(picture.srgb8),
                     .linear = std::move(picture.linear)});
-  by_key_.emplace(key, id);
+  scales.push_back(values->scale);
   return id;
 }
 

@@ -1,12 +1,13 @@
 // Textures while a scene is being read.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "diagnostics.hpp"
@@ -20,7 +21,12 @@ struct PictureUser {
   std::string where;
 };
 
-/// Pictures are decoded when a material names them, each once, within the limits of the import.
+/// What a picture is read for. Colours are at most 1; emission may be anything, and is stored divided by
+/// a power of two so that its values are at most 1, too.
+enum class PictureRole { kColour, kEmission };
+
+/// Pictures are decoded when a material names them, each once, whether that succeeds or not, within the
+/// limits of the import.
 class DraftTextures {
  public:
   bool allow_missing = false;  ///< what is missing or unreadable is left out with a warning
@@ -28,10 +34,14 @@ class DraftTextures {
   /// Index of the picture that `reference`, written in `user.file`, means: kNoTexture where it is
   /// left out; nothing after an error, which names it.
   std::optional<std::uint32_t> beside(const SceneFiles& files, std::string_view reference,
-                                      const PictureUser& user, Diagnostics& diagnostics);
-  /// The same for bytes that are embedded; `key` is a name for them, unique in the scene.
-  std::optional<std::uint32_t> embedded(const std::string& key, std::string_view bytes,
-                                        const PictureUser& user, Diagnostics& diagnostics);
+                                      const PictureUser& user, PictureRole role,
+                                      Diagnostics& diagnostics);
+  /// The same for bytes that are embedded, unless known() has them; `name` is unique in the scene.
+  std::optional<std::uint32_t> embedded(const std::string& name, std::string_view bytes,
+                                        const PictureUser& user, PictureRole role,
+                                        Diagnostics& diagnostics);
+  /// What was read under this name before: kNoTexture where it was left out.
+  [[nodiscard]] std::optional<std::uint32_t> known(const std::string& name, PictureRole role) const;
   /// What is to happen to a picture that cannot be had, for `reason`.
   std::optional<std::uint32_t> unusable(ImportErrorCode code, const std::string& reason,
                                         const PictureUser& user, Diagnostics& diagnostics);
@@ -44,11 +54,16 @@ class DraftTextures {
   void add_corners(std::size_t set, std::size_t id, const std::array<std::uint32_t, 3>& corners);
 
   std::vector<TextureImage> images;
+  std::vector<double> scales;  ///< one an image: the power of two its values were divided by
   std::vector<MaterialTextures> materials;
   std::array<UvSet, 2> uv_sets;
 
  private:
-  std::map<std::string, std::uint32_t, std::less<>> by_key_;
+  std::optional<std::uint32_t> decode(const std::string& name, std::string_view bytes,
+                                      const PictureUser& user, PictureRole role,
+                                      Diagnostics& diagnostics);
+
+  std::map<std::pair<std::string, PictureRole>, std::uint32_t> by_name_;
   std::uint64_t bytes_ = 0;  ///< of all decoded pictures
 };
 

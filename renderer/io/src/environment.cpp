@@ -38,7 +38,7 @@ std::optional<PictureFile> read_map(const SceneFiles& files, const std::string& 
   const auto bytes = read_whole(files, name, limits.max_picture_file_bytes, diagnostics);
   if (!bytes || !diagnostics.may_go_on()) return std::nullopt;
   auto read = read_picture_file({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()},
-                                limits.max_environment_texels);
+                                {.max_pixels = limits.max_environment_texels});
   if (const auto* error = std::get_if<PictureFileError>(&read)) {
     diagnostics.fail(ImportErrorCode::kInvalidPicture,
                      "the environment map is no picture that can be used: " + error->message, name,

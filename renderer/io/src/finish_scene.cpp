@@ -233,7 +233,9 @@ class Finisher {
       use.image = new_id[use.image];
     };
     std::array<bool, 2> set_used{};
-    for (MaterialTextures& used : draft.materials) {
+    for (std::size_t i = 0; i < draft.materials.size(); ++i) {
+      if (!scale_emission(i)) return false;
+      MaterialTextures& used = draft.materials[i];
       for (TextureUse* use : {&used.base, &used.emission}) {
         keep(*use);
         if (use->used()) set_used[use->uv_set] = true;
@@ -246,6 +248,22 @@ class Finisher {
     check_corners(*textures);
     scene_.textures = std::move(textures);
     return diagnostics_.may_go_on();
+  }
+
+  // Values of a texture are at most 1; what its picture was divided by goes to the factor.
+  bool scale_emission(std::size_t id) {
+    const TextureUse& use = draft_.textures.materials[id].emission;
+    if (!use.used()) return true;
+    Material& material = scene_.materials[id];
+    const Rgbd scaled = Rgbd(material.emission) * draft_.textures.scales[use.image];
+    if (!(std::max({scaled.x, scaled.y, scaled.z}) <= diagnostics_.limits().max_radiance)) {
+      return diagnostics_.fail(
+          ImportErrorCode::kInvalidValue,
+          "the emission of material " + in_quotes(material.name) + " times its texture is too bright",
+          report_.root_file);
+    }
+    material.emission = Rgb(scaled);
+    return true;
   }
 
   // An index beyond the coordinates is none. Triangles whose texture has no place are listed.

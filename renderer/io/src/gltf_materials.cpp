@@ -88,7 +88,8 @@ bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& mater
   const auto roughness = at.object("pbrMetallicRoughness");
   const auto& holder = glossiness ? glossiness : roughness;
   if (holder && material.base_color != Rgbd(0.0)) {
-    const auto base = textures.use(*holder, glossiness ? "diffuseTexture" : "baseColorTexture");
+    const auto base = textures.use(*holder, glossiness ? "diffuseTexture" : "baseColorTexture",
+                                   PictureRole::kColour);
     if (!base) return false;
     used.base = *base;
     used.specular_tint = specular_tint(material);
@@ -99,7 +100,7 @@ bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& mater
   if (!at.has("emissiveTexture") || material.emissive == Rgbd(0.0)) {
     return !at.diagnostics().failed();
   }
-  const auto emission = textures.use(at, "emissiveTexture");
+  const auto emission = textures.use(at, "emissiveTexture", PictureRole::kEmission);
   if (!emission) return false;
   used.emission = *emission;
   // The texture decides where the surface glows: without it, nowhere.

@@ -79,7 +79,7 @@ bool GltfTextures::read_sampler(const JsonAt& texture, TextureUse& use) {
          !texture.diagnostics().failed();
 }
 
-std::optional<std::uint32_t> GltfTextures::image(const JsonAt& texture) {
+std::optional<std::uint32_t> GltfTextures::image(const JsonAt& texture, PictureRole role) {
   Diagnostics& diagnostics = root_.diagnostics();
   const PictureUser user{texture.file(), texture.pointer()};
   if (!texture.has("source")) {
@@ -90,12 +90,14 @@ std::optional<std::uint32_t> GltfTextures::image(const JsonAt& texture) {
   const auto index = texture.member("source").integer();
   const auto at = index ? element("images", *index, texture) : std::nullopt;
   if (!at) return std::nullopt;
-  const std::string key = "embedded image " + std::to_string(*index);
+  // A name that no file of the upload has: the names of files never begin with a slash.
+  const std::string key = "/images/" + std::to_string(*index);
+  if (const auto id = draft_->textures.known(key, role)) return id;
   if (at->has("bufferView")) {
     const auto view = at->member("bufferView").integer();
     const auto bytes = view ? buffers_->view(*view, *at) : std::nullopt;
     if (!bytes) return std::nullopt;
-    return draft_->textures.embedded(key, *bytes, user, diagnostics);
+    return draft_->textures.embedded(key, *bytes, user, role, diagnostics);
   }
   const auto uri = at->has("uri") ? at->member("uri").text_view() : std::nullopt;
   if (!uri) {
@@ -104,15 +106,16 @@ std::optional<std::uint32_t> GltfTextures::image(const JsonAt& texture) {
   }
   if (const auto encoded = base64_part(*uri)) {
     const auto bytes = decode_base64(*encoded);
-    if (bytes) return draft_->textures.embedded(key, *bytes, user, diagnostics);
+    if (bytes) return draft_->textures.embedded(key, *bytes, user, role, diagnostics);
     at->fail(ImportErrorCode::kInvalidValue, "the base64 text is damaged");
     return std::nullopt;
   }
   const auto name = has_scheme(*uri) ? std::nullopt : decode_percent(*uri);
-  return draft_->textures.beside(*files_, name ? *name : std::string(*uri), user, diagnostics);
+  return draft_->textures.beside(*files_, name ? *name : std::string(*uri), user, role, diagnostics);
 }
 
-std::optional<TextureUse> GltfTextures::use(const JsonAt& holder, const char* key) {
+std::optional<TextureUse> GltfTextures::use(const JsonAt& holder, const char* key,
+                                            PictureRole role) {
   TextureUse use;
   const auto info = holder.object(key);
   if (!info) return holder.diagnostics().failed() ? std::nullopt : std::optional(use);
@@ -126,13 +129,16 @@ std::optional<TextureUse> GltfTextures::use(const JsonAt& holder, const char* ke
   if (!texture || !read_transform(*info, use, uv_set) || !read_sampler(*texture, use)) {
     return std::nullopt;
   }
+  std::optional<std::uint32_t> id;
   if (uv_set > 1) {
-    info->fail(ImportErrorCode::kInvalidValue,
-               "texture coordinates are TEXCOORD_0 or TEXCOORD_1, not " + std::to_string(uv_set));
-    return std::nullopt;
+    id = draft_->textures.unusable(
+        ImportErrorCode::kInvalidValue,
+        "texture coordinates are TEXCOORD_0 or TEXCOORD_1, not " + std::to_string(uv_set),
+        {info->file(), info->pointer()}, root_.diagnostics());
+  } else {
+    use.uv_set = static_cast<std::uint8_t>(uv_set);
+    id = image(*texture, role);
   }
-  use.uv_set = static_cast<std::uint8_t>(uv_set);
-  const auto id = image(*texture);
   if (!id) return std::nullopt;
   use.image = *id;
   return use;

@@ -14,12 +14,12 @@ class GltfTextures {
 
   /// What the textureInfo member `key` of `holder` asks for; unused where it is absent or left out.
   /// Nothing after an error.
-  std::optional<TextureUse> use(const JsonAt& holder, const char* key);
+  std::optional<TextureUse> use(const JsonAt& holder, const char* key, PictureRole role);
 
  private:
   std::optional<JsonAt> element(const char* list, std::uint64_t index, const JsonAt& at);
   bool read_sampler(const JsonAt& texture, TextureUse& use);
-  std::optional<std::uint32_t> image(const JsonAt& texture);
+  std::optional<std::uint32_t> image(const JsonAt& texture, PictureRole role);
 
   const SceneFiles* files_;
   JsonAt root_;

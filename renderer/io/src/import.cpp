@@ -80,7 +80,8 @@ bool import_into(const SceneFiles& files, const ImportOptions& options, Diagnost
   result.report.format = *format;
   result.report.root_file = io::clean_text(*root);
   io::SceneDraft draft;
-  if (sidecar) draft.textures.allow_missing = sidecar->root().flag_or("allow_missing", false);
+  draft.textures.allow_missing =
+      (sidecar && sidecar->root().flag_or("allow_missing", false)) || options.allow_missing;
   if (diagnostics.failed()) return false;
   if (!read_format(*format, files, *root, diagnostics, draft)) return false;
   if (sidecar && !io::apply_sidecar(files, sidecar->root(), draft)) return false;

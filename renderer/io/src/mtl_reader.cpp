@@ -43,8 +43,8 @@ class MtlReader {
     if (word == "Kd") return color(text, word, kLargestWeight, current_->kd);
     if (word == "Ks") return color(text, word, kLargestWeight, current_->ks);
     if (word == "Ke") return emission(text, word);
-    if (word == "map_Kd") return map(text, base_);
-    if (word == "map_Ke") return map(text, emission_);
+    if (word == "map_Kd") return map(text, PictureRole::kColour, base_);
+    if (word == "map_Ke") return map(text, PictureRole::kEmission, emission_);
     if (word == "Tf") return color(text, word, kLargestWeight, current_->tf);
     if (word == "Ns") return number(text, word, 0.0, kMaxExponent, current_->ns);
     if (word == "Ni") return refraction(text);
@@ -143,7 +143,7 @@ class MtlReader {
     return true;
   }
 
-  bool map(std::string_view text, TextureUse& use) {
+  bool map(std::string_view text, PictureRole role, TextureUse& use) {
     MtlMap map = read_mtl_map(text);
     if (map.file.empty()) return lines_.fail(ImportErrorCode::kSyntax, "the texture has no name");
     for (const std::string& option : map.ignored) {
@@ -151,7 +151,7 @@ class MtlReader {
            "the texture option " + in_quotes(option) + " is ignored");
     }
     const auto image = draft_.textures.beside(
-        files_, map.file, {lines_.file_name(), line_text(lines_.line())}, diagnostics_);
+        files_, map.file, {lines_.file_name(), line_text(lines_.line())}, role, diagnostics_);
     if (!image) return false;
     use = map.use;
     use.image = *image;

@@ -39,12 +39,21 @@ std::variant<std::string, Problem> scene_name(const Request& request) {
   return invalid_parameter("name", "at most 200 bytes without control characters");
 }
 
+std::variant<bool, Problem> allows_missing(const Request& request) {
+  const auto* value = find_value(request.query, "allow_missing");
+  if (value == nullptr || *value == "false") return false;
+  if (*value == "true") return true;
+  return invalid_parameter("allow_missing", "must be true or false");
+}
+
 }  // namespace
 
 UploadStart Api::start_upload(const Request& request, std::string expected_digest) {
-  if (auto problem = check_query(request, {"name"})) return to_response(*problem);
+  if (auto problem = check_query(request, {"name", "allow_missing"})) return to_response(*problem);
   auto name = scene_name(request);
   if (const auto* problem = std::get_if<Problem>(&name)) return to_response(*problem);
+  const auto missing = allows_missing(request);
+  if (const auto* problem = std::get_if<Problem>(&missing)) return to_response(*problem);
   const auto kind = upload_kind(request);
   if (const auto* problem = std::get_if<Problem>(&kind)) return to_response(*problem);
   auto slot = UploadSlot::take(uploads_, kMaxUploads);
@@ -60,7 +69,8 @@ UploadStart Api::start_upload(const Request& request, std::string expected_diges
     const auto begun = (*staged)->begin_file(chosen == SceneKind::kZip ? "scene.zip" : "scene.glb");
     if (!begun) return to_response(problem_of(begun.error()));
   }
-  AddSceneOptions options{std::get<std::string>(std::move(name)), std::move(expected_digest)};
+  AddSceneOptions options{std::get<std::string>(std::move(name)), std::move(expected_digest),
+                          std::get<bool>(missing)};
   return UploadPlan{std::make_unique<StagedUpload>(parts_.scheduler, std::move(slot),
                                                    std::move(staged).value(), std::move(options)),
                     chosen == SceneKind::kFiles, config_.uploads.max_upload_bytes};

@@ -119,6 +119,8 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
   const JobLimits limits;
   JobRequest& request = options.picture.request;
   command.add_option("SCENE", options.scene, what)->required();
+  command.add_flag("--allow-missing", options.allow_missing,
+                   "textures that are missing or cannot be read are left out with a warning");
   command.add_option("--samples", request.stop.samples, "samples per pixel")
       ->check(CLI::Range(std::uint64_t{1}, limits.max_samples))
       ->capture_default_str();
@@ -206,6 +208,8 @@ void add_accuracy(CLI::App& app, CliOptions& options) {
   auto* accuracy = app.add_subcommand(
       "accuracy", "measure what each knob costs on a scene: error against seconds, and bias");
   accuracy->add_option("SCENE", options.scene, kSceneFiles)->required();
+  accuracy->add_flag("--allow-missing", options.allow_missing,
+                     "textures that are missing or cannot be read are left out with a warning");
   add_view(*accuracy, options, "WxH in pixels, at most 65536 of them (160x120)");
   accuracy->add_option("--seconds", options.accuracy.seconds, "of one processor, for each knob")
       ->check(CLI::Range(1e-3, 86400.0))

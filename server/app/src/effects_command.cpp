@@ -33,7 +33,7 @@ void print(const EffectReport& report) {
 }  // namespace
 
 ExitCode effects_command(const CliOptions& options) {
-  const auto loaded = load_here(options.scene);
+  const auto loaded = load_here(options.scene, options.allow_missing);
   if (!loaded) return complain(loaded.error());
   const auto settings = render_settings(options.picture.request, *loaded->scene);
   if (!settings) return complain(settings.error());

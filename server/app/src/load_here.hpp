@@ -8,7 +8,8 @@
 namespace raykiln::server {
 
 /// The scene as the server would take it. Errors: those of find_scene_files and of the intake.
-[[nodiscard]] Result<LoadedScene> load_here(const std::filesystem::path& scene);
+[[nodiscard]] Result<LoadedScene> load_here(const std::filesystem::path& scene,
+                                            bool allow_missing);
 [[nodiscard]] Result<LoadedScene> load_here(const ScenePackage& package);
 
 /// The same before anything of it is judged or dropped.

@@ -121,8 +121,9 @@ Result<std::vector<std::uint8_t>> local_exr(const LocalPicture& picture, const s
 
 ExitCode render_command(const CliOptions& options) {
   render::set_image_library_threads(1);
-  const auto package = find_scene_files(options.scene);
+  auto package = find_scene_files(options.scene);
   if (!package) return complain(package.error());
+  package->allow_missing = options.allow_missing;
   const auto scene = scene_id(*package);
   if (!scene) return complain(scene.error());
   JobRequest request = options.picture.request;

@@ -73,7 +73,7 @@ ExitCode replay_of_job(const CliOptions& options) {
 
 /// The sample as this program renders it.
 ExitCode replay_of_scene(const CliOptions& options) {
-  const auto loaded = load_here(options.scene);
+  const auto loaded = load_here(options.scene, options.allow_missing);
   if (!loaded) return complain(loaded.error());
   const JobRequest& request = options.picture.request;
   const auto settings = render_settings(request, *loaded->scene);

@@ -35,16 +35,35 @@ std::set<std::string> material_files(const fs::path& obj) {
   return names;
 }
 
-/// Values of all "uri" members of a glTF. A scan, not a parse: a name too many is harmless, since
-/// only files that exist are taken, and the importer judges what is missing.
-std::set<std::string> uris(const fs::path& gltf) {
+/// File names in the texture statements of an MTL. Options stand before a name that may hold spaces: what
+/// begins at any word is offered.
+std::set<std::string> texture_files(const fs::path& mtl) {
+  std::set<std::string> names;
+  std::ifstream in(mtl);
+  for (std::string line; std::getline(in, line);) {
+    const auto begin = line.find_first_not_of(" \t");
+    if (begin == std::string::npos || line.compare(begin, 4, "map_") != 0) continue;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    std::replace(line.begin(), line.end(), '\\', '/');
+    for (auto at = line.find_first_of(" \t", begin); at != std::string::npos; at = line.find_first_of(" \t", at)) {
+      at = line.find_first_not_of(" \t", at);
+      if (at != std::string::npos) names.insert(line.substr(at));
+    }
+  }
+  return names;
+}
+
+/// Values of all members of this name in a JSON file. A scan, not a parse: a name too many is harmless,
+/// since only files that exist are taken, and the importer judges what is missing.
+std::set<std::string> values_of(const std::string& member, const fs::path& file) {
   std::set<std::string> names;
   std::error_code error;
-  if (fs::file_size(gltf, error) > kMaxGltfBytes || error) return names;
-  std::ifstream in(gltf, std::ios::binary);
+  if (fs::file_size(file, error) > kMaxGltfBytes || error) return names;
+  std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  for (auto at = text.find("\"uri\""); at != std::string::npos; at = text.find("\"uri\"", at + 5)) {
-    const auto open = text.find_first_not_of(" \t\r\n:", at + 5);
+  const std::string key = '"' + member + '"';
+  for (auto at = text.find(key); at != std::string::npos; at = text.find(key, at + key.size())) {
+    const auto open = text.find_first_not_of(" \t\r\n:", at + key.size());
     if (open == std::string::npos || text[open] != '"') continue;
     const auto close = text.find('"', open + 1);
     const auto uri = text.substr(open + 1, close == std::string::npos ? 0 : close - open - 1);
@@ -87,6 +106,7 @@ Result<ScenePackage> file_with_neighbours(const fs::path& path, const std::set<s
   std::set<std::string> names = others;
   names.insert(package.name);
   names.insert("raykiln.json");
+  names.merge(values_of("file", root / "raykiln.json"));  // of an environment
   for (const auto& name : names) add_file(package, root, name);
   return package;
 }
@@ -130,8 +150,17 @@ Result<ScenePackage> find_scene_files(const fs::path& path) {
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (ending == ".zip") return one_file(path, SceneKind::kZip);
   if (ending == ".glb") return one_file(path, SceneKind::kGlb);
-  if (ending == ".obj") return file_with_neighbours(path, material_files(path));
-  if (ending == ".gltf") return file_with_neighbours(path, uris(path));
+  if (ending == ".obj") {
+    std::set<std::string> names = material_files(path);
+    for (const std::string& mtl : material_files(path)) {
+      const fs::path folder = fs::path(mtl).parent_path();
+      for (const std::string& name : texture_files(path.parent_path() / mtl)) {
+        names.insert((folder / name).lexically_normal().generic_string());
+      }
+    }
+    return file_with_neighbours(path, names);
+  }
+  if (ending == ".gltf") return file_with_neighbours(path, values_of("uri", path));
   return Error{ErrorKind::kInvalid, "scene_unsupported",
                "a scene is a .obj, .gltf, .glb or .zip file or a folder", path.string()};
 }

@@ -111,18 +111,20 @@ void say_warnings(const CliOptions& options, const std::string& json) {
 Result<ClientResponse> put_scene(const ServerAddress& server, const ScenePackage& package, const std::string& id) {
   BodyParts body = body_of(package);
   return HttpClient(server, kImportSilence)
-      .upload("PUT", "/v1/scenes/" + id + "?name=" + percent_encode(package.name),
+      .upload("PUT", "/v1/scenes/" + id + "?name=" + percent_encode(package.name) +
+                         (package.allow_missing ? "&allow_missing=true" : ""),
               {{"Content-Type", content_type(package.kind)}}, body.length(),
               [&body](char* to, std::size_t room) { return body.read(to, room); });
 }
 
 std::optional<std::string> upload_scene(Remote& remote, const CliOptions& options) {
-  const auto package = find_scene_files(options.scene);
+  auto package = find_scene_files(options.scene);
   const auto wrong = [&](const Error& error) {
     remote.fail(ExitCode::kScene, error.message + " (" + error.where + ')');
     return std::nullopt;
   };
   if (!package) return wrong(package.error());
+  package->allow_missing = options.allow_missing;
   const auto id = scene_id(*package);
   if (!id) return wrong(id.error());
   const std::string target = "/v1/scenes/" + *id;

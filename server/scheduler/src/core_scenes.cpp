@@ -40,7 +40,9 @@ void Scheduler::Core::import_scene(std::shared_ptr<std::unique_ptr<SceneUpload>>
                                    const AddSceneOptions& options, const Reply<AddedScene>& reply) {
   const auto import = [&]() -> Result<AddedScene> {
     const std::string id = (*upload)->id();
-    auto loaded = parts_.intake.load((*upload)->kind(), (*upload)->files(), {});
+    const auto missing =
+        options.allow_missing ? MissingTextures::kLeaveOut : MissingTextures::kRefuse;
+    auto loaded = parts_.intake.load((*upload)->kind(), (*upload)->files(), missing, {});
     if (!loaded) return loaded.error();
     auto created = parts_.store.commit_scene(std::move(*upload), options.name, parts_.clock.wall(),
                                              encode_report(loaded->report));

@@ -182,7 +182,7 @@ Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight)
   auto files = parts_.store.scene_files(flight->scene_id);
   if (!files) return files.error();
   imports_.add();
-  auto loaded = parts_.intake.load(record->kind, *files, flight->token());
+  auto loaded = parts_.intake.load(record->kind, *files, MissingTextures::kLeaveOut, flight->token());
   if (!loaded) return loaded.error();
   const std::string key = tree_key(*loaded->scene, BuildParams{});
   auto tree = obtain_tree(flight, *loaded->scene, key);

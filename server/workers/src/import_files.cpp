@@ -24,8 +24,10 @@ class ScratchDirectory {
   std::filesystem::path path_;
 };
 
-render::ImportResult import_plain(const std::vector<BlobFile>& files, std::stop_token stop) {
+render::ImportResult import_plain(const std::vector<BlobFile>& files, MissingTextures missing,
+                                  std::stop_token stop) {
   render::ImportOptions options;
+  options.allow_missing = missing == MissingTextures::kLeaveOut;
   options.stop = std::move(stop);
   return render::import_scene(BlobSceneFiles(files), options);
 }
@@ -33,20 +35,21 @@ render::ImportResult import_plain(const std::vector<BlobFile>& files, std::stop_
 }  // namespace
 
 Result<render::ImportResult> import_files(SceneKind kind, const std::vector<BlobFile>& files,
-                                          const UploadLimits& limits,
+                                          const UploadLimits& limits, MissingTextures missing,
                                           const std::function<Result<std::filesystem::path>()>& scratch,
                                           std::stop_token stop) {
   if (files.empty()) return Error{ErrorKind::kInvalid, "scene_empty", "there is no file", ""};
-  if (kind == SceneKind::kFiles) return import_plain(files, std::move(stop));
+  if (kind == SceneKind::kFiles) return import_plain(files, missing, std::move(stop));
   if (kind == SceneKind::kGlb) {
-    return import_plain({{"scene.glb", files.front().path, files.front().bytes}}, std::move(stop));
+    return import_plain({{"scene.glb", files.front().path, files.front().bytes}}, missing,
+                        std::move(stop));
   }
   auto made = scratch();
   if (!made) return made.error();
   const ScratchDirectory directory(std::move(*made));
   const auto unpacked = unpack_zip(files.front().path, directory.path(), limits, stop);
   if (!unpacked) return unpacked.error();
-  return import_plain(*unpacked, std::move(stop));
+  return import_plain(*unpacked, missing, std::move(stop));
 }
 
 }  // namespace raykiln::server

@@ -13,8 +13,8 @@ class FileIntake final : public SceneIntake {
       : limits_(limits), scratch_(std::move(scratch)) {}
 
   Result<LoadedScene> load(SceneKind kind, const std::vector<BlobFile>& files,
-                           std::stop_token stop) override {
-    auto result = import_files(kind, files, limits_, scratch_, std::move(stop));
+                           MissingTextures missing, std::stop_token stop) override {
+    auto result = import_files(kind, files, limits_, missing, scratch_, std::move(stop));
     if (!result) return result.error();
     if (const auto* error = std::get_if<render::ImportError>(&*result)) return to_error(*error);
     auto& imported = std::get<render::ImportedScene>(*result);

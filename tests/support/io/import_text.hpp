@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "raykiln/io/import.hpp"
+#include "raykiln/scene/surface_textures.hpp"
 
 namespace raykiln::render::test {
 
@@ -66,6 +67,31 @@ inline Vec3d normal_of(const Scene& scene, std::size_t i) {
                          Vec3d(scene.mesh.positions[t[2]]) - a));
 }
 
+inline void expect_sound(const SurfaceTextures& textures, const Scene& scene) {
+  ASSERT_EQ(textures.materials.size(), scene.materials.size());
+  for (const TextureImage& image : textures.images) {
+    ASSERT_TRUE(image.width > 0 && image.height > 0);
+    const std::size_t values = 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    ASSERT_EQ(image.srgb8.size() + image.linear.size(), values);
+    ASSERT_TRUE(image.srgb8.empty() || image.linear.empty());
+    for (const float value : image.linear) ASSERT_TRUE(value >= 0.0F && value <= 1.0F);
+  }
+  for (const MaterialTextures& used : textures.materials) {
+    for (const TextureUse* use : {&used.base, &used.emission}) {
+      if (!use->used()) continue;
+      ASSERT_LT(use->image, textures.images.size());
+      ASSERT_LT(use->uv_set, textures.uv_sets.size());
+      for (int i = 0; i < 3; ++i) ASSERT_TRUE(std::isfinite(use->u_row[i]) && std::isfinite(use->v_row[i]));
+    }
+  }
+  for (const UvSet& set : textures.uv_sets) {
+    ASSERT_LE(set.corners.size(), scene.mesh.triangles.size());
+    for (const auto& corners : set.corners) {
+      for (const std::uint32_t id : corners) ASSERT_TRUE(id == kNoUv || id < set.coordinates.size());
+    }
+  }
+}
+
 /// What import_scene promises of every scene that it returns.
 inline void expect_sound(const ImportedScene& imported) {
   const Scene& scene = imported.scene;
@@ -96,6 +122,7 @@ inline void expect_sound(const ImportedScene& imported) {
     ASSERT_TRUE(m.specular_exp >= 0.0 && m.specular_exp <= 1e15);
     ASSERT_TRUE(m.index_of_refraction > 0.0F && std::isfinite(m.index_of_refraction));
   }
+  if (scene.textures != nullptr) expect_sound(*scene.textures, scene);
   for (const PointLight& l : scene.point_lights) ASSERT_TRUE(finite(l.position) && finite(l.intensity));
   for (const Camera& c : scene.cameras) {
     ASSERT_TRUE(finite(c.eye));

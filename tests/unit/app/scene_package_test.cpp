@@ -46,6 +46,14 @@ TEST_F(ScenePackageTest, FindsWhatAnObjNames) {
   EXPECT_EQ(names("c.obj"), (Names{"c.obj", "raykiln.json", "with space.mtl"}));
 }
 
+TEST_F(ScenePackageTest, TakesTexturesAndTheEnvironmentAlong) {
+  write("a.obj", "mtllib textures/m.mtl\n");
+  write("textures/m.mtl", "newmtl a\n  map_Kd -s 2 2 my wood.png\r\nmap_Ke ..\\glow.png\n# map_Kd n.png\n");
+  write("raykiln.json", R"({"environment": {"file": "sky.exr"}})");
+  for (const char* name : {"textures/my wood.png", "textures/n.png", "glow.png", "sky.exr"}) write(name, "");
+  EXPECT_EQ(names("a.obj"), (Names{"a.obj", "glow.png", "raykiln.json", "sky.exr", "textures/m.mtl", "textures/my wood.png"}));
+}
+
 TEST_F(ScenePackageTest, FindsWhatAGltfNames) {
   write("a.gltf", R"({"buffers":[{"uri" : "a%20b.bin"},{"uri":"data:x"},{"uri":"../x"}],"images":[{"uri":"textures/t.png"}]})");
   write("a b.bin", "");

@@ -40,7 +40,7 @@ Bytes written(const char* format, const std::vector<std::string>& channels, OIIO
 }
 
 PictureFile read(const Bytes& bytes) {
-  auto result = read_picture_file(bytes, 100);
+  auto result = read_picture_file(bytes, {.max_pixels = 100});
   const auto* error = std::get_if<PictureFileError>(&result);
   EXPECT_EQ(error, nullptr) << error->message;
   return error != nullptr ? PictureFile{} : std::get<PictureFile>(std::move(result));
@@ -104,8 +104,8 @@ TEST(PictureFile, ChannelsOfAnExrAreFoundByName) {
 
 TEST(PictureFile, SizeIsCheckedBeforeItIsAllocated) {
   const Bytes bytes = written("png", {"R", "G", "B"}, OIIO::TypeDesc::UINT8);
-  EXPECT_TRUE(std::holds_alternative<PictureFile>(read_picture_file(bytes, 6)));
-  const auto refused = read_picture_file(bytes, 5);
+  EXPECT_TRUE(std::holds_alternative<PictureFile>(read_picture_file(bytes, {.max_pixels = 6})));
+  const auto refused = read_picture_file(bytes, {.max_pixels = 5});
   ASSERT_TRUE(std::holds_alternative<PictureFileError>(refused));
   EXPECT_NE(std::get<PictureFileError>(refused).message.find("3 x 2"), std::string::npos);
 }
@@ -113,7 +113,7 @@ TEST(PictureFile, SizeIsCheckedBeforeItIsAllocated) {
 TEST(PictureFile, OtherFormatsAreRefused) {
   for (const std::string text : {"", "BM", "GIF89a.....", "II*\0........", "<svg></svg>", "#?", "\x89PN"}) {
     const Bytes bytes(text.begin(), text.end());
-    EXPECT_TRUE(std::holds_alternative<PictureFileError>(read_picture_file(bytes, 100))) << text;
+    EXPECT_TRUE(std::holds_alternative<PictureFileError>(read_picture_file(bytes, {.max_pixels = 100}))) << text;
   }
 }
 
@@ -135,7 +135,7 @@ TEST(PictureFile, SurvivesDamage) {
         bytes[next() % bytes.size()] = static_cast<std::uint8_t>(next());
       }
       if (next() % 4 == 0) bytes.resize(next() % bytes.size());
-      const auto result = read_picture_file(bytes, 10000);
+      const auto result = read_picture_file(bytes, {.max_pixels = 10000});
       if (const auto* picture = std::get_if<PictureFile>(&result)) {
         ++accepted;
         const auto pixels = static_cast<std::size_t>(picture->width * picture->height);

@@ -45,8 +45,8 @@ TEST(ShadingLoops, TheLeanestThatHoldsWhatIsSimulatedRuns) {
   EXPECT_EQ(loop_of(cornell_with_ball(), "auto"), "matte");
   EXPECT_EQ(loop_of(cornell_with(support::mirror_material(0.9F, 1e10)), "auto"), "opaque");
   EXPECT_EQ(loop_of(cornell_with(support::mirror_material(0.9F, 20.0)), "auto"), "opaque");
-  EXPECT_EQ(loop_of(cornell_with(support::glass_material(1.5F, 1e10)), "auto"), "general");
-  EXPECT_EQ(loop_of(support::everything(), "auto"), "general");
+  EXPECT_EQ(loop_of(cornell_with(support::glass_material(1.5F, 1e10)), "auto"), "phong");
+  EXPECT_EQ(loop_of(support::everything(), "auto"), "phong");
 }
 
 TEST(ShadingLoops, AllIsTheGeneralOne) {
@@ -55,15 +55,15 @@ TEST(ShadingLoops, AllIsTheGeneralOne) {
   }
 }
 
-TEST(ShadingLoops, UniformDirectionsNeedTheGeneralOne) {
+TEST(ShadingLoops, UniformDirectionsNeedBothSides) {
   support::EffectScene s = support::diffuse_cornell();
   s.settings.direction_sampling = DirectionSampling::kUniformSphere;
-  EXPECT_EQ(loop_of(s, "auto"), "general");
+  EXPECT_EQ(loop_of(s, "auto"), "phong");
 }
 
 TEST(ShadingLoops, OnlyWhatIsAskedAtEveryVertexNeedsTheReducedOne) {
   EXPECT_EQ(loop_of(support::everything(), "without=refraction"), "reduced");
-  EXPECT_EQ(loop_of(support::everything(), "without=roulette,fresnel"), "general");
+  EXPECT_EQ(loop_of(support::everything(), "without=roulette,fresnel"), "phong");
   EXPECT_EQ(loop_of(support::diffuse_cornell(), "without=refraction"), "flat_matte");
   EXPECT_EQ(loop_of(cornell_with_ball(), "without=shading_normals"), "flat_matte");
 }

@@ -1,5 +1,6 @@
 // Textures of OBJ and glTF: read, placed, shared, refused by name.
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -117,8 +118,65 @@ TEST(ObjTexture, MemoryIsBounded) {
   EXPECT_EQ(expect_error(files, options).code, Code::kLimitExceeded);
   options.limits.max_texture_bytes = 6;
   EXPECT_NE(expect_scene(files, options).scene.textures, nullptr);
+  // Refused by its header, before it is decoded.
   options.limits.max_texture_texels = 1;
   EXPECT_EQ(expect_error(files, options).code, Code::kInvalidPicture);
+}
+
+std::string exr(const std::vector<float>& rgb) {
+  const Image image{.width = static_cast<int>(rgb.size() / 3), .height = 1, .rgb = rgb};
+  const auto bytes = std::get<Bytes>(encode_exr(image, {}, {}));
+  return {bytes.begin(), bytes.end()};
+}
+
+ImportedScene exr_scene(const std::string& mtl, const std::vector<float>& rgb) {
+  return expect_scene({{"a.obj", kObj}, {"m.mtl", mtl}, {"x.exr", exr(rgb)}});
+}
+
+// Colours are at most 1. Emission keeps its ratio: the picture is divided by a power of two, and the
+// factor is multiplied by it.
+TEST(ObjTexture, LinearPicturesAreBroughtToOne) {
+  const auto colour = exr_scene("newmtl a\nKd 1 1 1\nmap_Kd x.exr\n", {-1, 0.25F, 7, 1, 0, 0.5F});
+  EXPECT_EQ(colour.scene.textures->images[0].linear, (std::vector<float>{0, 0.25F, 1, 1, 0, 0.5F}));
+  EXPECT_EQ(count_of(colour, Warn::kClampedValue), 2U);
+  const auto both = exr_scene("newmtl a\nKd 1 1 1\nKe 3 3 3\nmap_Kd x.exr\nmap_Ke x.exr\n",
+                              {0, 0.25F, 7, 1, 0, 0.5F});
+  const std::uint32_t id = both.scene.mesh.material_ids[0];
+  const MaterialTextures& used = both.scene.textures->materials[id];
+  EXPECT_NE(used.base.image, used.emission.image);
+  EXPECT_EQ(both.scene.materials[id].emission, Rgb(24.0F));
+  EXPECT_EQ(both.scene.textures->images[used.emission.image].linear[2], 0.875F);
+  EXPECT_EQ(both.scene.textures->images[used.base.image].linear[2], 1.0F);
+}
+
+TEST(ObjTexture, WhatIsNotFiniteOrTooBrightIsRefused) {
+  const float inf = std::numeric_limits<float>::infinity();
+  for (const float bad : {std::nanf(""), inf, -inf}) {
+    const Texts files{{"a.obj", kObj}, {"m.mtl", "newmtl a\nmap_Ke x.exr\n"}, {"x.exr", exr({0, bad, 0})}};
+    EXPECT_EQ(expect_error(files).code, Code::kNotFinite);
+  }
+  const Texts files{{"a.obj", kObj}, {"m.mtl", "newmtl a\nKe 1e20 0 0\nmap_Ke x.exr\n"},
+                    {"x.exr", exr({1e20F, 0, 0})}};
+  EXPECT_EQ(expect_error(files).code, Code::kInvalidValue);
+}
+
+TEST(ObjTexture, AMaterialMayBeDescribedFurtherDown) {
+  std::string late = kObj.substr(kObj.find('\n') + 1) + "mtllib m.mtl\n";
+  const auto described_late = obj_scene("newmtl a\nmap_Kd tex/x.png\n", late);
+  EXPECT_EQ(described_late.scene.textures->uv_sets[0].corners.size(), 2U);
+  EXPECT_EQ(count_of(described_late, Warn::kIgnoredTexture), 0U);
+}
+
+// A damaged picture is looked at once, however many materials name it.
+TEST(ObjTexture, ADamagedPictureIsReadOnce) {
+  std::string mtl;
+  for (int i = 0; i < 50; ++i) mtl += "newmtl m" + std::to_string(i) + "\nmap_Kd x.png\n";
+  ImportOptions options;
+  options.allow_missing = true;
+  options.limits.max_textures = 1;
+  const auto imported = expect_scene(
+      {{"a.obj", kObj}, {"m.mtl", mtl + "newmtl a\nKd 1 1 1\n"}, {"x.png", png().substr(0, 40)}}, options);
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 1U);
 }
 
 TEST(MtlMap, OptionsAndNames) {

@@ -104,6 +104,41 @@ TEST(Textures, AnEmitterIsBrightWhereItsPictureIs) {
   }
 }
 
+/// Irradiance at `at`, of normal +z, from a polygon of radiance 1 above it (Lambert 1760): half the sum of
+/// the angles of its sides times the cosines of their planes with the normal.
+double irradiance(const std::vector<Vec3d>& polygon, const Vec3d& at) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3d a = normalize(polygon[i] - at);
+    const Vec3d b = normalize(polygon[(i + 1) % polygon.size()] - at);
+    const Vec3d side = cross(a, b);
+    sum += std::atan2(length(side), dot(a, b)) * side.z / length(side);
+  }
+  return 0.5 * std::abs(sum);
+}
+
+// Half black and half white: what the white half sends to a patch below is known, whichever way light is
+// found, and the half that is drawn in vain costs noise alone.
+TEST(Textures, AHalfWhiteEmitterLightsAPatchAsItsWhiteHalfDoes) {
+  TextureImage halves = four();
+  halves.height = 1;
+  halves.srgb8 = {0, 0, 0, 255, 255, 255};
+  const double truth =
+      0.5 / kPi * 2.0 *
+      irradiance({{0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 1, 0}}, {0.25, 0.375, -0.5});
+  for (const bool sampling : {true, false}) {
+    SceneBuilder b = square_with(diffuse_material(Rgb(0.0F), Rgb(2.0F)), halves, true);
+    b.quad({Vec3f(-2, -2, -0.5F), {2, -2, -0.5F}, {2, 2, -0.5F}, {-2, 2, -0.5F}},
+           b.material(diffuse_material(Rgb(0.5F))));
+    b.camera({-0.5F, -0.5F, -0.25F}, {0.25F, 0.375F, -0.5F}, {0, 0, 1}, 1e-3);
+    RenderSettings settings = square(8, 1);
+    settings.emitter_sampling = sampling;
+    const Estimate e = support::estimate(support::render_all(*b.prepare(), settings, 2048));
+    EXPECT_NEAR(e.mean.x, truth, 4.0 * e.standard_error) << sampling;
+    EXPECT_LT(e.standard_error, 0.01 * truth) << sampling;
+  }
+}
+
 // A picture that is black all over makes a dark scene, and nothing that is not finite.
 TEST(Textures, ABlackEmitterIsDark) {
   TextureImage black = four();

@@ -125,7 +125,7 @@ TEST_F(ArchiveTest, IntakeReadsASceneAndLeavesNothingUnpacked) {
   });
   const auto load = [&](const std::string& obj) {
     write_zip(zip, {{"a.obj", obj}});
-    return intake->load(SceneKind::kZip, {{"a.zip", zip, fs::file_size(zip)}}, {});
+    return intake->load(SceneKind::kZip, {{"a.zip", zip, fs::file_size(zip)}}, MissingTextures::kRefuse, {});
   };
   const auto good = load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   ASSERT_TRUE(good) << good.error().message;

@@ -48,7 +48,7 @@ ExitCode accuracy_command(const CliOptions& options) {
     std::cerr << "raykiln: --size: at most " << render::kMostStudyPixels << " pixels, such as 256x256\n";
     return ExitCode::kUsage;
   }
-  const auto loaded = load_here(options.scene);
+  const auto loaded = load_here(options.scene, options.allow_missing);
   if (!loaded) return complain(loaded.error());
   const auto view = render_settings(request, *loaded->scene);
   if (!view) return complain(view.error());

@@ -27,11 +27,16 @@ struct PictureFile {
 };
 struct PictureFileError {
   std::string message;
+  bool no_room = false;  ///< it is larger than max_bytes
+};
+struct PictureFileLimits {
+  std::uint64_t max_pixels = 0;
+  std::uint64_t max_bytes = UINT64_MAX;  ///< of the values that are returned
 };
 
-/// A PNG, JPEG, EXR or Radiance HDR picture of at most `max_pixels`. The header is checked before
-/// anything of the picture's size is allocated. Linear values may be anything a file can hold.
+/// A PNG, JPEG, EXR or Radiance HDR picture within the limits. The header is checked before anything
+/// of the picture's size is allocated. Linear values may be anything a file can hold.
 [[nodiscard]] std::variant<PictureFile, PictureFileError> read_picture_file(
-    std::span<const std::uint8_t> bytes, std::uint64_t max_pixels);
+    std::span<const std::uint8_t> bytes, const PictureFileLimits& limits);
 
 }  // namespace raykiln::render

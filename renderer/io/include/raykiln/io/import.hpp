@@ -111,6 +111,7 @@ struct ImportOptions {
   ImportLimits limits;
   std::stop_token stop;   ///< polled at least every few milliseconds; ends with kStopped
   std::string root_file;  ///< names the file to read; empty: the sidecar's "scene", or the only one
+  bool allow_missing = false;  ///< textures that cannot be had are left out; so says a sidecar, too
 };
 
 using ImportResult = std::variant<ImportedScene, ImportError>;

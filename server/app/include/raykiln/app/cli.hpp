@@ -66,6 +66,7 @@ struct CliOptions {
   bool json = false;
   bool quiet = false;
   std::filesystem::path scene;
+  bool allow_missing = false;  ///< textures
   std::vector<std::filesystem::path> outputs;
   PictureOptions picture;
   ReplayPlace replay;

@@ -32,6 +32,7 @@ struct AddedScene {
 struct AddSceneOptions {
   std::string name;             ///< free text; may be empty
   std::string expected_digest;  ///< empty, or what the id must come out as ("digest_mismatch")
+  bool allow_missing = false;   ///< missing textures are left out with a warning
 };
 
 struct SubmitJob {

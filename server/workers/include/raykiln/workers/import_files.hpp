@@ -13,10 +13,13 @@
 
 namespace raykiln::server {
 
+/// What becomes of a scene whose textures are missing or cannot be read.
+enum class MissingTextures { kRefuse, kLeaveOut };
+
 /// What the importer says about the files. Errors: "scene_empty" and those of unpack_zip. `scratch`
 /// makes a private directory to unpack into, which is removed.
 [[nodiscard]] Result<render::ImportResult> import_files(
-    SceneKind kind, const std::vector<BlobFile>& files, const UploadLimits& limits,
+    SceneKind kind, const std::vector<BlobFile>& files, const UploadLimits& limits, MissingTextures missing,
     const std::function<Result<std::filesystem::path>()>& scratch, std::stop_token stop);
 
 }  // namespace raykiln::server

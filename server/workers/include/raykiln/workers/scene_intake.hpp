@@ -11,6 +11,7 @@
 #include "raykiln/base/result.hpp"
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/store/store.hpp"
+#include "raykiln/workers/import_files.hpp"
 #include "raykiln/workers/scene_report.hpp"
 
 namespace raykiln::server {
@@ -28,9 +29,10 @@ class SceneIntake {
   /// Errors of the input are kInvalid, kUnsupported or kTooLarge: scene_invalid, scene_unsupported,
   /// scene_empty, scene_too_large and those of unpack_zip; `where` = "file", "file:12" or
   /// "file:/json/pointer". kUnavailable "import_stopped" after a stop.
-  /// Nothing that was unpacked stays behind.
+  /// Nothing that was unpacked stays behind. A scene that was taken once is always taken with
+  /// kLeaveOut: either nothing was missing, or leaving it out was asked for.
   [[nodiscard]] virtual Result<LoadedScene> load(SceneKind kind, const std::vector<BlobFile>& files,
-                                                 std::stop_token stop) = 0;
+                                                 MissingTextures missing, std::stop_token stop) = 0;
 };
 
 /// The real one. `scratch` makes a private directory to unpack into (Store::scratch_directory).
