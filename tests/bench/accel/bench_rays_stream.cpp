@@ -36,7 +36,7 @@ struct Options {
   std::size_t check = 200;
   int repeat = 3;
   std::uint64_t seed = 1;
-  std::string json;
+  std::string json, save_rays;
 };
 
 // Jittered pinhole outside the box looking at its middle, in tiles of 8 x 8 pixels.
@@ -144,6 +144,7 @@ class Bench {
   /// Times every kernel on the rays, in turns; gives what the first found.
   template <typename Answer>
   std::vector<Answer> measure(const char* name, const std::vector<Ray>& rays) {
+    if (!options_.save_rays.empty()) save(name, rays);
     std::vector<Run<Answer>> runs;
     for (const Traversal kernel : kernels_) runs.push_back({kernel, {}, {}, {}});
     for (auto& run : runs) {
@@ -170,6 +171,14 @@ class Bench {
   std::size_t wrong_in_all = 0;
 
  private:
+  /// As bench_rays reads them.
+  void save(std::string rays_of, const std::vector<Ray>& rays) const {
+    std::replace(rays_of.begin(), rays_of.end(), ' ', '-');
+    std::ofstream out(options_.save_rays + "." + rays_of + ".rays", std::ios::binary);
+    out.write(reinterpret_cast<const char*>(rays.data()),
+              static_cast<std::streamsize>(rays.size() * sizeof(Ray)));
+  }
+
   template <typename Answer>
   void time_once(const std::vector<Ray>& rays, Run<Answer>& run) const {
     const std::span<const Ray> all(rays);
@@ -312,6 +321,8 @@ int main(int argc, char** argv) {
   app.add_option("--check", options.check, "rays of each class to check by brute force");
   app.add_option("--repeat", options.repeat, "best of this many")->check(CLI::Range(1, 1000));
   app.add_option("--seed", options.seed, "of meshes and rays");
+  app.add_option("--save-rays", options.save_rays,
+                 "write the rays to PREFIX.<class>.rays, for bench_rays; with one mesh");
   app.add_option("--json", options.json, "write the figures to this file");
   CLI11_PARSE(app, argc, argv);
   return run(options);

@@ -65,7 +65,7 @@ TEST(Kernels, CountWhatTheScalarWalkCounts) {
         params.leaf_width = width;
         params.k_i = k_i;
         const auto tree = build(mesh, params);
-        expect_same(*tree, hard_rays(*tree, mesh, 3000, 40));
+        expect_same(*tree, hard_rays(*tree, mesh, 1500, 40));
       }
     }
   }
@@ -82,7 +82,7 @@ TEST(Kernels, AnyLengthOfStream) {
 
 TEST(Kernels, EveryScale) {
   for (const TestMesh& mesh : meshes()) {
-    const auto rays = hard_rays(*build(mesh), mesh, 480, 42);
+    const auto rays = hard_rays(*build(mesh), mesh, 240, 42);
     for (const int exponent : {-100, -75, -63, -40, -12, 12, 40, 61, 62, 63, 64, 65, 75, 100}) {
       const float scale = std::ldexp(1.0F, exponent);
       TestMesh scaled = mesh;
