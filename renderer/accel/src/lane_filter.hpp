@@ -20,7 +20,7 @@ struct FilterRay {
 
 template <class V>
 inline typename V::F largest_of(typename V::F a, typename V::F b, typename V::F c) {
-  return V::max(V::max(V::abs(a), V::abs(b)), V::abs(c));
+  return V::larger_magnitude(V::larger_magnitude(a, b), c);
 }
 
 template <class V>

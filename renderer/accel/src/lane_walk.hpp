@@ -45,8 +45,9 @@ struct alignas(64) LaneGroup {
   alignas(16) StackEntry stack[kW][kLaneStack];
 };
 
-/// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth.
-template <class V, class B, int kLeafWidth, bool kAnyHit, std::size_t kGroups>
+/// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth. Twice: lanes of two
+/// neighbouring blocks, or B again.
+template <class V, class B, class Twice, int kLeafWidth, bool kAnyHit, std::size_t kGroups>
 class LaneWalk {
  public:
   LaneWalk(const LaneQuery& query, LaneCounts& counts)
@@ -75,6 +76,7 @@ class LaneWalk {
   using I = typename V::I;
   using M = typename V::M;
   using Group = LaneGroup<V>;
+  static constexpr bool kTwice = Twice::kWidth == 2 * B::kWidth;
   static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
   static constexpr std::uint32_t kEntryBytes = sizeof(StackEntry);
   static constexpr std::uint32_t kEmptyLeaf = 1;  ///< nodes[1] of every tree
@@ -210,42 +212,64 @@ class LaneWalk {
 
   // True when the ray is done.
   bool visit_leaf(Group& group, std::uint32_t lane) {
-    const FilterRay<B> ray = filter_ray(group, lane);
-    const std::uint32_t first = group.leaf_place[lane];
-    for (std::uint32_t b = first; b < first + group.leaf_count[lane]; ++b) {
-      ++counts_.block_tests;
-      const std::uint32_t lanes = candidates(ray, b, group.known[lane]);
-      if (lanes == 0) continue;
-      const LaneBest best = query_.decide(query_.context, group.ray[lane], b, lanes);
-      if (kAnyHit) {
-        if (best.id != kLaneNoHit) return true;
-      } else {
-        group.limit[lane] = best.t;
-        group.known[lane] = best.id;
+    const float* const first = query_.blocks + kBlockFloats * group.leaf_place[lane];
+    const std::uint32_t count = group.leaf_count[lane];
+    std::uint32_t b = 0;
+    if constexpr (kTwice) {
+      if (count > 1) {
+        const auto ray = filter_ray<Twice>(group, lane);
+        for (; b + 1 < count; b += 2) {
+          const auto both = candidates<Twice>(ray, first + kBlockFloats * b, group.known[lane]);
+          ++counts_.block_tests;
+          if (decide(group, lane, b, both & 0xFFU)) return true;
+          ++counts_.block_tests;
+          if (decide(group, lane, b + 1, both >> 8)) return true;
+        }
       }
+      if (b == count) return false;
+    }
+    const auto ray = filter_ray<B>(group, lane);
+    for (; b < count; ++b) {
+      ++counts_.block_tests;
+      const float* const block = first + kBlockFloats * b;
+      std::uint32_t found = 0;
+      for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
+        found |= candidates<B>(ray, block + at, group.known[lane]) << at;
+      }
+      if (decide(group, lane, b, found)) return true;
     }
     return false;
   }
 
-  static FilterRay<B> filter_ray(const Group& group, std::uint32_t lane) {
+  // The last word on the candidates of the b-th block of the lane's leaf. True when the ray is done.
+  bool decide(Group& group, std::uint32_t lane, std::uint32_t b, std::uint32_t found) {
+    if (found == 0) return false;
+    const LaneBest best =
+        query_.decide(query_.context, group.ray[lane], group.leaf_place[lane] + b, found);
+    if (kAnyHit) return best.id != kLaneNoHit;
+    group.limit[lane] = best.t;
+    group.known[lane] = best.id;
+    return false;
+  }
+
+  template <class L>
+  static FilterRay<L> filter_ray(const Group& group, std::uint32_t lane) {
     const std::size_t z = group.main_axis[lane];
     const std::size_t x = z == 2 ? 0 : z + 1;
     const std::size_t y = x == 2 ? 0 : x + 1;
-    return {B::set1(group.o[x][lane]), B::set1(group.o[y][lane]), B::set1(group.o[z][lane]),
-            B::set1(group.sx[lane]),   B::set1(group.sy[lane]),   x * kLeafWidth,
+    return {L::set1(group.o[x][lane]), L::set1(group.o[y][lane]), L::set1(group.o[z][lane]),
+            L::set1(group.sx[lane]),   L::set1(group.sy[lane]),   x * kLeafWidth,
             y * kLeafWidth,            z * kLeafWidth};
   }
 
-  std::uint32_t candidates(const FilterRay<B>& ray, std::uint32_t index,
-                           std::uint32_t known) const {
-    const float* block = query_.blocks + kBlockFloats * index;
-    const auto* ids = reinterpret_cast<const std::uint32_t*>(block + std::size_t{9} * kLeafWidth);
-    std::uint32_t found = 0;
-    for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
-      const std::uint32_t lanes = may_be_hit<B, kLeafWidth>(ray, block + at);
-      if (lanes != 0) found |= (lanes & worth_deciding<B>(ids + at, known)) << at;
-    }
-    return found;
+  // Those of a block, or of the part of it that begins at `block`, that have to be decided.
+  template <class L>
+  static std::uint32_t candidates(const FilterRay<L>& ray, const float* block,
+                                  std::uint32_t known) {
+    constexpr std::size_t kIds = 9 * kLeafWidth;
+    const std::uint32_t lanes = may_be_hit<L, kLeafWidth>(ray, block);
+    if (lanes == 0) return 0;
+    return lanes & worth_deciding<L>(reinterpret_cast<const std::uint32_t*>(block + kIds), known);
   }
 
   const LaneQuery& query_;

@@ -31,6 +31,8 @@ struct Lanes16 {
   /// a > b ? a : b, so b if one is NaN.
   static F max(F a, F b) { return _mm512_max_ps(a, b); }
   static F abs(F a) { return _mm512_abs_ps(a); }
+  /// The larger of |a| and |b|; of a number and NaN the number.
+  static F larger_magnitude(F a, F b) { return _mm512_range_ps(a, b, 0xB); }
   /// a with its sign turned where b is negative.
   static F turn_sign(F a, F b) { return _mm512_xor_ps(a, _mm512_and_ps(b, set1(-0.0F))); }
 
@@ -104,6 +106,20 @@ struct Lanes16 {
     put(1, _mm512_shuffle_ps(ab_lo, c_lo, 0xEE));
     put(2, _mm512_shuffle_ps(ab_hi, c_hi, 0x44));
     put(3, _mm512_shuffle_ps(ab_hi, c_hi, 0xEE));
+  }
+};
+
+/// Two neighbouring blocks of eight triangles.
+struct Lanes8Twice : Lanes16 {
+  static constexpr std::size_t kBlockBytes = 320;
+
+  static F load(const float* p) {
+    const auto* second = reinterpret_cast<const unsigned char*>(p) + kBlockBytes;
+    return _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(p)),
+                              _mm256_load_ps(reinterpret_cast<const float*>(second)), 1);
+  }
+  static I load(const std::uint32_t* p) {
+    return as_int(load(reinterpret_cast<const float*>(p)));
   }
 };
 

@@ -35,6 +35,14 @@ struct Lanes8 {
   /// a > b ? a : b, so b if one is NaN.
   static F max(F a, F b) { return _mm256_max_ps(a, b); }
   static F abs(F a) { return _mm256_andnot_ps(set1(-0.0F), a); }
+  /// The larger of |a| and |b|.
+  static F larger_magnitude(F a, F b) {
+#ifdef __AVX512DQ__
+    return _mm256_range_ps(a, b, 0xB);
+#else
+    return max(abs(a), abs(b));
+#endif
+  }
   /// a with its sign turned where b is negative.
   static F turn_sign(F a, F b) { return _mm256_xor_ps(a, _mm256_and_ps(b, set1(-0.0F))); }
 
