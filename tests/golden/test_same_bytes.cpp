@@ -118,6 +118,20 @@ TEST_F(SameBytes, AnIncompleteBlockRenderedAnewLeavesNoTrace) {
   expect_same(render(*scene_, settings, 32, {}), film, "21 extended to 32");
 }
 
+TEST_F(SameBytes, OfSobolPointsToo) {
+  RenderSettings settings = small_settings();
+  settings.sampler = Sampler::kSobol;
+  const Film reference = render(*scene_, settings, 37, {});
+  expect_same(reference, render(*scene_, settings, 37, {7, 5, 2}), "7 threads, tile 5, 2 blocks a task");
+  expect_same(reference, render(*scene_, settings, 37, {2, 1000, 5}), "2 threads, one tile, 5 blocks a task");
+  Film film = render(*scene_, settings, 21, {});
+  const std::vector<SampleBlock> again{sample_block(5)};
+  render_into(film, *scene_, settings, again, {});
+  expect_same(render(*scene_, settings, 32, {}), film, "21 extended to 32");
+  const auto plain = render(*scene_, small_settings(), 37, {}).plane("beauty");
+  EXPECT_NE(reference.plane("beauty"), plain);
+}
+
 TEST_F(SameBytes, ForBruteForceAndOtherTrees) {
   RenderSettings settings = small_settings();
   const Film reference = render(*scene_, settings, 8, {});

@@ -33,9 +33,7 @@ and sampling, M measured error, F film, X invariance, T scenes with a closed-for
 GROUPS = "KVSDLMFXT"
 
 # Entry, what of it, promise.
-DUE = [
-    ("M08", "second line", "slopes of stratified and scrambled low-discrepancy samples"),
-]
+DUE = []  # none is left
 
 
 def read(path):

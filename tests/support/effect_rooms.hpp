@@ -87,6 +87,7 @@ inline EffectScene random_effect_room(std::uint64_t seed) {
     s.settings.branches = 2;
     s.settings.max_depth = std::min(*s.settings.max_depth, 3);
   }
+  if (dice() % 4 == 0) s.settings.sampler = Sampler::kSobol;
   s.settings.seed = seed;
   return s;
 }

@@ -40,7 +40,7 @@ Survey survey(const Film& film) {
       static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
   double luminance_variance = 0.0, apart = 0.0, together = 0.0;
   for (std::size_t i = 0; i < pixels; ++i) {
-    const PixelStatistics p = pixel_statistics(film.pixel(i));
+    const PixelStatistics p = pixel_statistics(film, i);
     result.unsampled += p.samples == 0 ? 1U : 0U;
     result.unknown += p.known ? 0U : 1U;
     result.least = std::min(result.least, p.samples);
@@ -92,7 +92,7 @@ struct Strip {
     begin = index(y0 - first);
     end = index(y1 - first);
     for (std::size_t i = index(first); i < index(last); ++i) {
-      pixels.push_back(pixel_statistics(film.pixel(i)));
+      pixels.push_back(pixel_statistics(film, i));
     }
   }
   [[nodiscard]] std::size_t index(int row) const {

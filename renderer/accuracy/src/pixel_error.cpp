@@ -25,7 +25,7 @@ std::vector<double> pooled(const std::vector<PixelStatistics>& pixels, std::size
   std::vector<double> own(pixels.size()), scatter(pixels.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     own[i] = pixels[i].variance[channel];
-    scatter[i] = pixels[i].largest_share * own[i] * own[i];
+    scatter[i] = pixels[i].scatter * own[i] * own[i];
   }
   const auto shares = noise_shares(own, scatter, windows);
   const auto sums = windows.sums(own);
@@ -51,7 +51,7 @@ PixelErrors pixel_errors(const Film& film) {
     std::vector<PixelStatistics> strip(static_cast<std::size_t>(last - first) * width);
     std::vector<double> known(strip.size());
     for (std::size_t i = 0; i < strip.size(); ++i) {
-      strip[i] = pixel_statistics(film.pixel(offset + i));
+      strip[i] = pixel_statistics(film, offset + i);
       known[i] = strip[i].known ? 1.0 : 0.0;
     }
     const Windows windows{film.width(), last - first, kWindowRadius};

@@ -22,9 +22,9 @@ void add(Tally& tally, const SquaredErrors& errors, std::span<const PixelStatist
   const std::vector<double> others = windows.means_of_others(sums);
   for (std::size_t i = begin; i < end; ++i) {
     if (!(sums[i] > 0.0)) continue;
-    const double square = sums[i] * std::max(others[i], sums[i] * (1.0 - pixels[i].largest_share));
+    const double square = sums[i] * std::max(others[i], sums[i] * (1.0 - pixels[i].scatter));
     tally.sum += sums[i];
-    tally.variance += relative_variance(errors[i], correlation) * square;
+    tally.variance += relative_variance(errors[i], correlation) * square * (1.0 + 1.0 / pixels[i].degrees);
   }
 }
 

@@ -22,9 +22,10 @@ double sum_luminance(const std::array<double, 3>& c) { return luminance({c[0], c
 
 }  // namespace
 
-Film::Film(int width, int height)
+Film::Film(int width, int height, SampleRelation relation)
     : width_(width),
       height_(height),
+      relation_(relation),
       pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
 std::uint64_t PixelSums::samples() const {
@@ -44,7 +45,7 @@ Film::Tail Film::read_block(const BlockResult& result, std::size_t pixel) {
   tail.counts = {as_count(at(BlockPlane::kNan)), as_count(at(BlockPlane::kInf)), as_count(at(BlockPlane::kNegative)),
                  as_count(at(BlockPlane::kTruncated))};
   tail.samples = as_count(at(BlockPlane::kSamples));
-  tail.replicate = static_cast<std::uint32_t>(result.block.index % kReplicates);
+  tail.replicate = static_cast<std::uint32_t>(replicate_of(result.block.index));
   return tail;
 }
 

@@ -20,6 +20,10 @@ SampleBlock sample_block(std::uint64_t index) {
   return {.index = index, .first = first, .count = border_after(index) - first, .complete = true};
 }
 
+std::size_t replicate_of(std::uint64_t block_index) {
+  return block_index < kGrowingBlocks ? 0 : (block_index - kGrowingBlocks + 1) % kReplicates;
+}
+
 std::vector<SampleBlock> blocks_for(std::uint64_t samples) {
   std::vector<SampleBlock> blocks;
   for (std::uint64_t index = 0;; ++index) {

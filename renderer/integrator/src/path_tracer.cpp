@@ -98,7 +98,7 @@ void PathTracer::admit(Call& call) {
     const std::uint64_t pixel =
         (static_cast<std::uint64_t>(start.y) << 32) | static_cast<std::uint32_t>(start.x);
     PathState state;
-    state.key = path_key(settings.seed, pixel, start.sample);
+    state.key = path_key(settings.sampler, settings.seed, pixel, start.sample);
     state.slot = static_cast<std::uint32_t>(call.started);
     front.push(camera_.ray(start.x, start.y, settings.pixel_mode, vertex_key(state.key, 0, 0)),
                state);

@@ -28,6 +28,14 @@ std::uint64_t film_bytes(int width, int height) {
          Film::bytes_per_pixel();
 }
 
+SampleRelation sample_relation(Sampler sampler) {
+  return sampler == Sampler::kRandom ? SampleRelation::kIndependent : SampleRelation::kByReplicates;
+}
+
+Film make_film(const RenderSettings& settings) {
+  return {settings.width, settings.height, sample_relation(settings.sampler)};
+}
+
 std::optional<std::string> settings_error(const RenderSettings& settings, const Scene& scene) {
   const auto cameras = static_cast<long long>(scene.cameras.size());
   if (settings.width < 1 || settings.width > kLargestSide) return between("width", 1, kLargestSide);

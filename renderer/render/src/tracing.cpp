@@ -24,6 +24,7 @@ EffectPlan effect_plan(const RenderSettings& settings, const PreparedScene& scen
 PathSettings path_settings(const PreparedScene& scene, const RenderSettings& settings) {
   PathSettings path;
   path.seed = settings.seed;
+  path.sampler = settings.sampler;
   path.max_depth = path_limit(settings);
   path.branches = settings.branches;
   path.pixel_mode = settings.pixel_mode;

@@ -20,7 +20,7 @@ Film render_film(const Scene& scene, const RenderSettings& settings, std::uint64
   SerialTaskRunner runner;
   const auto prepared = prepare(shared, build_scene_tree(*shared, params, runner));
   const auto blocks = blocks_for(samples);
-  Film film(settings.width, settings.height);
+  Film film = make_film(settings);
   const auto result =
       render_tile(*prepared, settings, {0, 0, settings.width, settings.height}, blocks, {});
   merge(film, result);

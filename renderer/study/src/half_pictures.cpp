@@ -35,7 +35,7 @@ HalfPictures::HalfPictures(std::shared_ptr<const PreparedScene> scene, const Ren
                            std::array<std::uint64_t, 2> seeds)
     : scene_(std::move(scene)),
       settings_{with_seed(settings, seeds[0]), with_seed(settings, seeds[1])},
-      films_{Film(settings.width, settings.height), Film(settings.width, settings.height)} {}
+      films_{make_film(settings), make_film(settings)} {}
 
 void HalfPictures::advance(TaskRunner& runner) {
   const std::uint64_t until = std::max<std::uint64_t>(1, 2 * each_);

@@ -30,6 +30,8 @@ constexpr EffectSet kLobes{Effect::kGlossyLobes, Effect::kMirrors};
 
 std::vector<Knob> knobs() {
   return {
+      {"sampler=sobol", "scrambled Sobol' points in 8 replicates instead of independent numbers", {},
+       [](Variant& v) { v.settings.sampler = Sampler::kSobol; }},
       {"depth=2", "paths end after 2 reflections instead of by roulette", kBounces, depth(2)},
       {"depth=4", "paths end after 4 reflections", kBounces, depth(4)},
       {"depth=8", "paths end after 8 reflections", kBounces, depth(8)},

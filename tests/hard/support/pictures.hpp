@@ -42,7 +42,7 @@ inline Picture picture_of(const render::Film& film) {
 /// Renders all samples of all pixels; the tiles are `tile` pixels wide and high.
 inline Picture picture(const render::PreparedScene& scene, const render::RenderSettings& settings,
                        std::uint64_t samples, int tile = 1 << 20) {
-  render::Film film(settings.width, settings.height);
+  render::Film film = render::make_film(settings);
   render::RenderStats stats;
   const auto blocks = render::blocks_for(samples);
   for (int y = 0; y < settings.height; y += tile) {

@@ -30,7 +30,7 @@ bool long_run() {
 class Progress {
  public:
   Progress(const PreparedScene& scene, const RenderSettings& settings)
-      : scene_(scene), settings_(settings), film_(settings.width, settings.height) {}
+      : scene_(scene), settings_(settings), film_(make_film(settings)) {}
 
   /// To the first border of a block with at least so many samples.
   void advance_to(std::uint64_t samples) {

@@ -28,6 +28,7 @@ struct Case {
   SceneBuilder (*scene)();
   std::uint64_t samples;
   bool tame;  ///< enough samples for what happens in this scene: not flagged
+  Sampler sampler = Sampler::kRandom;
 };
 
 class RealScenes : public ::testing::TestWithParam<Case> {};
@@ -36,6 +37,7 @@ TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
   const std::size_t seeds = long_run() ? 200 : 64;
   RenderSettings settings;
   settings.width = settings.height = long_run() ? 24 : 12;
+  settings.sampler = GetParam().sampler;
   const std::uint64_t samples = GetParam().samples;
   const auto scene = GetParam().scene().prepare();
   std::vector<PixelErrors> pictures;
@@ -43,7 +45,7 @@ TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
   std::vector<double> sum;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     settings.seed = 500 + seed;
-    Film film(settings.width, settings.height);
+    Film film = make_film(settings);
     merge(film, support::render_all(*scene, settings, samples));
     pictures.push_back(pixel_errors(film));
     shown.push_back(image_error(film));
@@ -91,6 +93,7 @@ TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, RealScenes,
                          ::testing::Values(Case{"diffuse_with_area_light", support::diffuse_with_area_light, 64, true},
+                                           Case{"diffuse_by_sobol", support::diffuse_with_area_light, 128, true, Sampler::kSobol},
                                            Case{"lamp_over_a_slit", support::lamp_over_a_slit, 64, false},
                                            Case{"glass_with_caustic", support::glass_with_caustic, 64, false},
                                            Case{"many_small_lights", support::many_small_lights, 64, false}),

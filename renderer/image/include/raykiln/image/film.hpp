@@ -25,7 +25,7 @@ struct PixelRect {
 /// A range of sample indices, rendered and folded as one. Borders are 0, 1, 2, 4, 8, 16 and then
 /// every 16: a function of the index alone, so that the sums do not depend on how work was cut.
 struct SampleBlock {
-  std::uint64_t index = 0;  ///< 0, 1, 2, ...; belongs to replicate index mod 8
+  std::uint64_t index = 0;  ///< 0, 1, 2, ...; see replicate_of()
   std::uint64_t first = 0;  ///< first sample index
   std::uint64_t count = 0;  ///< samples rendered; less than the full block for the last of a job
   bool complete = true;     ///< false: kept apart by the film, rendered anew if the job is extended
@@ -38,6 +38,17 @@ struct SampleBlock {
 [[nodiscard]] std::vector<SampleBlock> blocks_for(std::uint64_t samples);
 
 inline constexpr int kReplicates = 8;
+
+/// The replicate that a block belongs to: samples 16 j .. 16 j + 15 are of replicate j mod 8, so that after
+/// every 128 samples all replicates hold as many, and 2^k of them after 2^(k+3). Samplers whose points fill
+/// space together randomise each replicate by itself.
+[[nodiscard]] std::size_t replicate_of(std::uint64_t block_index);
+
+/// How samples of one pixel depend on each other.
+enum class SampleRelation : std::uint8_t {
+  kIndependent,   ///< all of them are independent
+  kByReplicates,  ///< those of one replicate are placed together; only replicates are independent
+};
 
 /// How a plane of two pieces of work becomes one. Moments are merged after Chan, Golub & LeVeque
 /// (1979, eq. 1.5b): sums of squared deviations about their own means, never differences of squares.
@@ -118,7 +129,7 @@ struct PixelSums {
 /// Not thread-safe; one owner folds and reads.
 class Film {
  public:
-  Film(int width, int height);
+  Film(int width, int height, SampleRelation relation = SampleRelation::kIndependent);
 
   /// Bytes that a film of one pixel takes, the room for an incomplete last block included.
   [[nodiscard]] static std::size_t bytes_per_pixel();
@@ -148,6 +159,8 @@ class Film {
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
+  /// What a variance may be taken from: all samples, or replicates alone.
+  [[nodiscard]] SampleRelation relation() const { return relation_; }
 
  private:
   /// What a pixel holds of one block.
@@ -165,6 +178,7 @@ class Film {
   static void fold_pixel(PixelSums& into, const Tail& from);
 
   int width_, height_;
+  SampleRelation relation_;
   std::vector<PixelSums> pixels_;
   std::vector<Tail> tails_;  ///< the incomplete last blocks; empty until there is one
 };

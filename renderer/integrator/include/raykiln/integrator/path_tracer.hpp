@@ -26,6 +26,7 @@ struct TransportScene {
 
 struct PathSettings {
   std::uint64_t seed = 0;
+  Sampler sampler = Sampler::kRandom;
   int max_depth = 8;  ///< reflections after the first hit; with roulette (in `bsdf`) a hard limit
   int branches = 1;   ///< rays shot from each hit
   PixelMode pixel_mode = PixelMode::kRandom;

@@ -15,6 +15,7 @@
 #include "raykiln/image/film.hpp"
 #include "raykiln/integrator/camera_ray.hpp"    // PixelMode
 #include "raykiln/integrator/render_stats.hpp"  // RenderStats
+#include "raykiln/sampling/random.hpp"          // Sampler
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/shading/bsdf.hpp"  // DirectionSampling
 #include "raykiln/shading/light_model.hpp"
@@ -29,6 +30,7 @@ struct RenderSettings {
   std::optional<int> max_depth{};  ///< reflections after the first hit; unset: see path_limit()
   int branches = 1;              ///< rays shot from each hit; more than 1 is the seed's tree
   std::uint64_t seed = 0;
+  Sampler sampler = Sampler::kRandom;
   PixelMode pixel_mode = PixelMode::kRandom;
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;  ///< with multiple importance sampling
@@ -53,6 +55,10 @@ inline constexpr int kFixedDepth = 8;       ///< depth of all other paths, if un
 
 /// Bytes that a film of this size takes; saturates. What a job must be checked against before.
 [[nodiscard]] std::uint64_t film_bytes(int width, int height);
+
+/// An empty film for a picture with these settings: it knows what variances may be taken from.
+[[nodiscard]] Film make_film(const RenderSettings& settings);
+[[nodiscard]] SampleRelation sample_relation(Sampler sampler);
 
 /// First thing that is wrong with the settings for this scene, or nothing.
 [[nodiscard]] std::optional<std::string> settings_error(const RenderSettings& settings,

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "raykiln/sampling/sobol.hpp"
+
 namespace raykiln::render {
 
 /// What a number at a vertex is for. Slots are never renumbered, so that an effect that is absent
@@ -28,32 +30,23 @@ enum class Dimension : std::uint32_t {
   kCount = 16
 };
 
-/// All of (seed, pixel, sample) mixed into 128 bits.
+/// How the samples of a pixel are spread over its random numbers.
+enum class Sampler : std::uint8_t {
+  kRandom,  ///< independently
+  kSobol,   ///< in 8 replicates, each a scrambled Sobol' sequence by itself: see sobol.hpp
+};
+
+/// (seed, pixel, sample) mixed into 128 bits; of a sequence, all but the place in it, which stands apart.
 struct PathKey {
   std::uint64_t a = 0, b = 0;
+  SequencePoint point{};
 };
 
 /// A path key with path node and bounce mixed in.
 struct VertexKey {
   std::uint64_t a = 0, b = 0;
+  SequencePoint point{};
 };
-
-namespace keyed {
-
-// Fractional bits of the golden ratio and of sqrt(2), odd: steps that visit all of 2^64.
-inline constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;
-inline constexpr std::uint64_t kRootTwo = 0x6A09E667F3BCC909U;
-
-/// Stafford's "Mix13" finaliser (2011), the one of SplitMix64 (Steele, Lea & Flood 2014), with a
-/// second word added between its two rounds. A bijection of `z` for every `word`.
-constexpr std::uint64_t mix(std::uint64_t z, std::uint64_t word) {
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
-  z += word;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-  return z ^ (z >> 31);
-}
-
-}  // namespace keyed
 
 // Every input goes through at least two full rounds on the way to each output word; feeding one
 // input at a time keeps (pixel, sample) and (sample, pixel) apart.
@@ -66,11 +59,23 @@ constexpr std::uint64_t mix(std::uint64_t z, std::uint64_t word) {
   return {a, b};
 }
 
+/// Samples of a replicate share their key and differ in their point. No sample index of the plain key
+/// is as large as the complement of a replicate's number.
+[[nodiscard]] inline PathKey path_key(Sampler sampler, std::uint64_t seed, std::uint64_t pixel,
+                                      std::uint64_t sample) {
+  if (sampler == Sampler::kRandom) return path_key(seed, pixel, sample);
+  const SequencePlace place = sequence_place(sample);
+  PathKey key = path_key(seed, pixel, ~place.sequence);
+  key.point = place.point;
+  return key;
+}
+
 /// `node` numbers the branch among those of the same bounce (0 while a hit shoots one ray).
 [[nodiscard]] inline VertexKey vertex_key(const PathKey& path, std::uint64_t node,
                                           std::uint64_t bounce) {
   const std::uint64_t n = keyed::mix(path.b + node * keyed::kGolden, bounce * keyed::kRootTwo);
-  return {keyed::mix(path.a + bounce * keyed::kGolden, n), keyed::mix(n + keyed::kRootTwo, path.a)};
+  return {keyed::mix(path.a + bounce * keyed::kGolden, n), keyed::mix(n + keyed::kRootTwo, path.a),
+          path.point};
 }
 
 [[nodiscard]] inline std::uint64_t random_bits(const VertexKey& vertex, Dimension dimension) {
@@ -78,8 +83,12 @@ constexpr std::uint64_t mix(std::uint64_t z, std::uint64_t word) {
                     vertex.b);
 }
 
-/// Uniform in [0, 1), a multiple of 2^-53; never 1.
+/// Uniform in [0, 1), a multiple of 2^-53; never 1. Four slots from a multiple of 4 on are the coordinates
+/// of one point of a sequence; the points of other slots and vertices are randomised by themselves.
 [[nodiscard]] inline double uniform(const VertexKey& vertex, Dimension dimension) {
+  if (vertex.point.of_sequence()) {
+    return sobol_number(vertex.a, vertex.b, vertex.point, static_cast<std::uint32_t>(dimension));
+  }
   return static_cast<double>(random_bits(vertex, dimension) >> 11) * 0x1p-53;
 }
 
