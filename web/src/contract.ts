@@ -29,6 +29,7 @@ export interface JobRequest {
   pixel_mode?: string;
   direction_sampling?: string;
   emitter_sampling?: boolean;
+  sampler?: string;
   effects?: EffectChoice;
   tile?: number;
   priority?: number;

@@ -23,7 +23,7 @@ describe("check_form", () => {
 
 describe("to_request and from_job", () => {
   test("what was asked for fills the form again", () => {
-    const values = filled({ camera: "1", width: "100", seed: "7", emitter_sampling: "false", name: "x", priority: "3" });
+    const values = filled({ camera: "1", width: "100", seed: "7", emitter_sampling: "false", sampler: "sobol", name: "x", priority: "3" });
     expect(from_job(job({ request: to_request(values) }), [])).toEqual(values);
   });
 

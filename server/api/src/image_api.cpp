@@ -74,6 +74,7 @@ std::map<std::string, std::string> exr_attributes(const JobImage& image, const s
           {"raykiln:revision", std::to_string(image.revision)},
           {"raykiln:light_model", light_model_label(image.request.light_model, image.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(image.request.seed)},
+          {"raykiln:sampler", std::string(name(image.request.sampler))},
           {"raykiln:samples", shortest(image.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(image.request))},
           {"raykiln:effects", effects.lines.empty() ? image.request.effects : effects.label},

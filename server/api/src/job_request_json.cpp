@@ -170,6 +170,7 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
   read_named(reader, "direction_sampling", "bsdf, uniform_sphere", direction_sampling_named,
              request.direction_sampling);
   if (const auto on = reader.boolean("emitter_sampling")) request.emitter_sampling = *on;
+  read_named(reader, "sampler", "random, sobol", sampler_named, request.sampler);
   read_effects(reader, errors, request);
   read_integer(reader, "tile", {1, as_bound(limits.max_tile)}, Need::kOptional, request.tile);
   read_integer(reader, "priority", {1, as_bound(limits.max_priority)}, Need::kOptional, request.priority);
@@ -261,6 +262,7 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"pixel_mode", name(request.pixel_mode)},
           {"direction_sampling", name(request.direction_sampling)},
           {"emitter_sampling", request.emitter_sampling},
+          {"sampler", name(request.sampler)},
           {"effects", effects_value(request.effects)},
           {"tile", request.tile},
           {"priority", request.priority},

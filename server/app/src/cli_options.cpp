@@ -131,6 +131,14 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
   add_light_model(command, request);
   add_effects(command, request);
   add_view(command, options, "WxH in pixels (640x480)");
+  command.add_option_function<std::string>(
+      "--sampler",
+      [&request](const std::string& text) {
+        const auto sampler = sampler_named(text);
+        if (!sampler) throw CLI::ValidationError("--sampler is random or sobol");
+        request.sampler = *sampler;
+      },
+      "random, or sobol: points that fill space, less noise (random)");
   command.add_option("--tile", request.tile, "edge of a tile in pixels; changes no pixel")
       ->check(CLI::Range(1, limits.max_tile))
       ->capture_default_str();

@@ -65,7 +65,7 @@ class LocalJob {
         pool_(pool),
         blocks_(render::blocks_for(request.stop.samples)),
         plan_(request.width, request.height, request.tile, block_sizes(blocks_), TaskLength{}),
-        film_(request.width, request.height) {
+        film_(render::make_film(settings_)) {
     const StopRule& stop = request.stop;
     if (!stop.tile_samples.empty()) plan_.set_tile_samples(stop.tile_samples);
     if (stop.error) plan_.set_limit(plan_.blocks_for(kErrorFloor));

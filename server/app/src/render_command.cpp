@@ -26,6 +26,7 @@ std::map<std::string, std::string> attributes(const LocalPicture& picture, const
   return {{"raykiln:scene", scene},
           {"raykiln:light_model", light_model_label(job.request.light_model, job.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(job.request.seed)},
+          {"raykiln:sampler", std::string(name(job.request.sampler))},
           {"raykiln:samples", std::to_string(job.progress.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(job.request))},
           {"raykiln:effects", job.effects.label},

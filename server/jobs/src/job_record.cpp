@@ -193,7 +193,8 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   r.text("pixel_mode", name(q.pixel_mode));
   r.text("direction_sampling", name(q.direction_sampling));
   r.integer("emitter_sampling", q.emitter_sampling ? 1 : 0);
-  // Left out where it is the default: digests of requests stay those that older versions stored.
+  // Left out where they are the defaults: digests of requests stay those that older versions stored.
+  if (q.sampler != JobRequest{}.sampler) r.text("sampler", name(q.sampler));
   if (q.effects != JobRequest{}.effects) r.text("effects", q.effects);
   if (q.reuse) r.integer("reuse", 1);
 }
@@ -220,6 +221,7 @@ JobRequest read_request(const RecordReader& r) {
   q.direction_sampling =
       direction_sampling_named(r.text("direction_sampling")).value_or(q.direction_sampling);
   q.emitter_sampling = r.integer("emitter_sampling", 1) != 0;
+  q.sampler = sampler_named(r.text("sampler")).value_or(q.sampler);
   q.effects = r.text("effects", q.effects);
   q.reuse = r.integer("reuse") != 0;
   return q;

@@ -142,6 +142,8 @@ std::string_view name(DirectionSampling value) {
   return value == DirectionSampling::kBsdf ? "bsdf" : "uniform_sphere";
 }
 
+std::string_view name(Sampler value) { return value == Sampler::kRandom ? "random" : "sobol"; }
+
 std::optional<PixelMode> pixel_mode_named(std::string_view text) {
   if (text == "random") return PixelMode::kRandom;
   if (text == "centre") return PixelMode::kCentre;
@@ -150,6 +152,12 @@ std::optional<PixelMode> pixel_mode_named(std::string_view text) {
 std::optional<DirectionSampling> direction_sampling_named(std::string_view text) {
   if (text == "bsdf") return DirectionSampling::kBsdf;
   if (text == "uniform_sphere") return DirectionSampling::kUniformSphere;
+  return std::nullopt;
+}
+
+std::optional<Sampler> sampler_named(std::string_view text) {
+  if (text == "random") return Sampler::kRandom;
+  if (text == "sobol") return Sampler::kSobol;
   return std::nullopt;
 }
 

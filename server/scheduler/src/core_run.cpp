@@ -143,7 +143,8 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
     go_on_from(job, std::move(*kept));
   } else {
     const auto pixels = static_cast<std::size_t>(s.request.width) * static_cast<std::size_t>(s.request.height);
-    job.film = std::make_shared<render::Film>(s.request.width, s.request.height);
+    job.film = std::make_shared<render::Film>(s.request.width, s.request.height,
+                                              render::sample_relation(sampler_of(s.request)));
     job.picture = {s.request.width, s.request.height, std::vector<float>(3 * pixels)};
     job.pixel_seconds.assign(pixels, 0.0F);
   }

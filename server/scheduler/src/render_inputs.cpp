@@ -132,6 +132,10 @@ Status check_camera(const CameraChoice& choice, const SceneReport& report) {
   return success();
 }
 
+render::Sampler sampler_of(const JobRequest& request) {
+  return request.sampler == Sampler::kSobol ? render::Sampler::kSobol : render::Sampler::kRandom;
+}
+
 Result<render::RenderSettings> render_settings(const JobRequest& request,
                                                const render::Scene& scene) {
   const auto index = camera_index(request.camera, camera_names(scene));
@@ -153,6 +157,7 @@ Result<render::RenderSettings> render_settings(const JobRequest& request,
                                     ? render::DirectionSampling::kBsdf
                                     : render::DirectionSampling::kUniformSphere;
   settings.emitter_sampling = request.emitter_sampling;
+  settings.sampler = sampler_of(request);
   const auto effects = render::effect_choice_of(request.effects);
   if (!effects) {
     // A job that an older version stored may name what is gone.

@@ -55,6 +55,7 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.pixel_mode = PixelMode::kCentre;
   request.direction_sampling = DirectionSampling::kUniformSphere;
   request.emitter_sampling = false;
+  request.sampler = Sampler::kSobol;
   request.effects = "without=refraction,roulette";
   request.light_model = LightModel::kSeed;
   request.light_model_overrides = {PhongDivisor::kMax, FresnelFormula::kSchlick, false, std::nullopt, true};
@@ -99,6 +100,7 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/camera", {{"eye", {0, 0}}, {"look_at", {0, 0, 0}}}, "/camera/eye wrong_type");
   check("/camera", {{"eye", {0, 0, 0}}, {"look_at", {0, 0, 1}}, {"fov_deg", 180}}, "/camera/fov_deg out_of_range");
   check("/emitter_sampling", 1, "/emitter_sampling wrong_type");
+  check("/sampler", "halton", "/sampler invalid_value");
   check("/effects", "none", "/effects invalid_value");
   check("/effects", "without=refraction", "/effects invalid_value");
   check("/effects", 3, "/effects wrong_type");

@@ -85,7 +85,8 @@ TEST(JobRequest, ResultDigestLeavesOutWhatChangesNoPicture) {
       [](JobRequest& r) { r.light_model_overrides.roulette = false; },
       [](JobRequest& r) { r.max_depth = 1; },
       [](JobRequest& r) { ++r.seed; },
-      [](JobRequest& r) { r.emitter_sampling = !r.emitter_sampling; }};
+      [](JobRequest& r) { r.emitter_sampling = !r.emitter_sampling; },
+      [](JobRequest& r) { r.sampler = Sampler::kSobol; }};
   for (const auto& change : changes) {
     JobRequest other = good();
     change(other);
@@ -101,6 +102,7 @@ TEST(JobRecord, ReadsBack) {
   job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3};
   job.request.seed = (1ULL << 53) - 1;
   job.request.reuse = true;
+  job.request.sampler = Sampler::kSobol;
   job.state = JobState::kFailed;
   job.revision = 12;
   job.image_revision = 12;

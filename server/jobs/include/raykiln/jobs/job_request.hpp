@@ -17,6 +17,7 @@ namespace raykiln::server {
 
 enum class PixelMode { kRandom, kCentre };
 enum class DirectionSampling { kBsdf, kUniformSphere };
+enum class Sampler { kRandom, kSobol };
 
 /// When a picture is done: whichever comes first.
 struct StopRule {
@@ -57,6 +58,7 @@ struct JobRequest {
   PixelMode pixel_mode = PixelMode::kRandom;
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;
+  Sampler sampler = Sampler::kRandom;
   /// "auto", "all" or "without=refraction,roulette": which effects are simulated. The names are the
   /// renderer's; whoever reads a request from outside checks them.
   std::string effects = "auto";
@@ -65,8 +67,10 @@ struct JobRequest {
 
 [[nodiscard]] std::string_view name(PixelMode value);
 [[nodiscard]] std::string_view name(DirectionSampling value);
+[[nodiscard]] std::string_view name(Sampler value);
 [[nodiscard]] std::optional<PixelMode> pixel_mode_named(std::string_view name);
 [[nodiscard]] std::optional<DirectionSampling> direction_sampling_named(std::string_view name);
+[[nodiscard]] std::optional<Sampler> sampler_named(std::string_view name);
 
 /// Reflections after the first hit at which paths end: as asked for, else 1024 where roulette ends
 /// them before (one ray a hit), else 8.

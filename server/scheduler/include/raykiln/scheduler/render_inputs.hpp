@@ -16,6 +16,9 @@ namespace raykiln::server {
 [[nodiscard]] Result<render::RenderSettings> render_settings(const JobRequest& request,
                                                              const render::Scene& scene);
 
+/// The renderer's word for what the request asks for.
+[[nodiscard]] render::Sampler sampler_of(const JobRequest& request);
+
 /// Bytes that a job's film and its picture take while it is active; saturates.
 [[nodiscard]] std::uint64_t film_memory(const JobRequest& request);
 
