@@ -7,6 +7,7 @@
 
 #include "raykiln/sampling/warp.hpp"
 #include "raykiln/shading/bsdf.hpp"
+#include "raykiln/shading/microfacet_bsdf.hpp"
 
 namespace raykiln::render::support {
 
@@ -76,6 +77,32 @@ inline std::vector<NamedModel> light_models() {
 
 inline Bsdf bsdf_at(const Material& material, const Vec3f& wo, const BsdfModel& model = {}) {
   return make_bsdf(material, kUp, kUp, wo, model);
+}
+
+/// Opaque with both layers, a rough metal, a sheet and a body of glass.
+inline std::vector<NamedMaterial> facet_materials() {
+  Material plastic;
+  plastic.model = SurfaceModel::kMicrofacet;
+  plastic.diffuse = {0.6F, 0.3F, 0.1F};
+  plastic.specular = Rgb(0.04F);
+  plastic.facets.edge = 1.0F;
+  Material metal = plastic;
+  metal.diffuse = Rgb(0.0F);
+  metal.specular = {0.9F, 0.6F, 0.3F};
+  Material sheet = plastic;
+  sheet.transparent = 0.6F;
+  sheet.index_of_refraction = 1.5F;
+  sheet.facets.tint = {0.9F, 0.5F, 0.7F};
+  Material body = sheet;
+  body.transparent = 1.0F;
+  body.facets.thin = false;
+  return {{"plastic", plastic}, {"metal", metal}, {"sheet", sheet}, {"body", body}};
+}
+
+inline MicrofacetBsdf facets_at(Material material, double roughness, const Vec3f& wo,
+                                const BsdfModel& model = {}) {
+  material.facets.roughness = roughness;
+  return make_microfacet_bsdf(material, kUp, kUp, wo, model);
 }
 
 inline VertexKey numbered(std::uint64_t i, std::uint64_t seed = 1) {

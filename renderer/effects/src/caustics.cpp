@@ -10,7 +10,7 @@ Judgement judge(const EffectView& view) {
   const Material* diffuse =
       find_material(view, [](const Material& c) { return !is_black(c.diffuse); });
   const Material* specular =
-      find_material(view, [](const Material& c) { return !is_black(c.specular); });
+      find_material(view, is_specular);
   if (diffuse == nullptr || specular == nullptr)
     return {false, "the scene has not both diffuse and specular surfaces"};
   if (!reaches_two_surfaces(view)) return {false, "light does not come by way of two surfaces"};

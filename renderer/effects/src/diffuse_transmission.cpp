@@ -8,7 +8,7 @@ namespace {
 
 Judgement judge(const EffectView& view) {
   const Material* m = find_material(
-      view, [](const Material& c) { return !is_black(c.diffuse) && c.transparent > 0.0F; });
+      view, [](const Material& c) { return c.model == SurfaceModel::kPhong && !is_black(c.diffuse) && c.transparent > 0.0F; });
   return of_surface(
       view, m,
       m != nullptr ? says(*m, "diffuse and transparent", static_cast<double>(m->transparent)) : "",

@@ -8,7 +8,7 @@ Judgement judge(const EffectView& view) {
   // Fresnel's equations reflect nothing between equal indices; Schlick's formula does.
   const bool schlick = view.job.light_model.fresnel == FresnelFormula::kSchlick;
   const Material* m = find_material(view, [schlick](const Material& c) {
-    return !is_black(c.specular) && c.transparent > 0.0F &&
+    return has_border(c) &&
            (schlick || c.index_of_refraction != 1.0F);
   });
   return of_surface(

@@ -6,7 +6,7 @@ namespace {
 
 Judgement judge(const EffectView& view) {
   const Material* m =
-      find_material(view, [](const Material& c) { return !is_black(c.specular) && !is_sharp(c); });
+      find_material(view, [](const Material& c) { return has_phong_lobe(c) && !is_sharp(c); });
   return of_surface(view, m,
                     m != nullptr ? says(*m, "specular with exponent", m->specular_exp) : "",
                     "no material in use has a specular lobe below exponent 1e8");

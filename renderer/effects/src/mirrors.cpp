@@ -8,7 +8,7 @@ namespace {
 
 Judgement judge(const EffectView& view) {
   const Material* m = find_material(view, [](const Material& c) {
-    return !is_black(c.specular) && is_sharp(c) && c.transparent < 1.0F;
+    return has_phong_lobe(c) && is_sharp(c) && c.transparent < 1.0F;
   });
   return of_surface(view, m,
                     m != nullptr ? says(*m, "specular with exponent", m->specular_exp) : "",

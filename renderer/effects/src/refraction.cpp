@@ -8,7 +8,7 @@ namespace {
 
 Judgement judge(const EffectView& view) {
   const Material* m = find_material(
-      view, [](const Material& c) { return !is_black(c.specular) && c.transparent > 0.0F; });
+      view, has_border);
   return of_surface(
       view, m,
       m != nullptr ? says(*m, "specular and transparent", static_cast<double>(m->transparent)) : "",

@@ -9,8 +9,25 @@ namespace raykiln::render {
 
 [[nodiscard]] inline bool is_sharp(const Material& m) { return m.specular_exp >= kMirrorExponent; }
 
-[[nodiscard]] inline bool is_reflecting(const Material& m) {
-  return !is_black(m.diffuse) || !is_black(m.specular);
+[[nodiscard]] inline bool is_reflecting(const Material& m) { return scatters(m); }
+
+[[nodiscard]] inline bool has_facets(const Material& m) {
+  return m.model == SurfaceModel::kMicrofacet && scatters(m);
+}
+
+/// Of the seed's model.
+[[nodiscard]] inline bool has_phong_lobe(const Material& m) {
+  return m.model == SurfaceModel::kPhong && !is_black(m.specular);
+}
+
+/// Of either model.
+[[nodiscard]] inline bool is_specular(const Material& m) {
+  return has_phong_lobe(m) || (has_facets(m) && (!is_black(m.specular) || m.transparent > 0.0F || m.facets.edge > 0.0F));
+}
+
+/// A border between media: light may be refracted.
+[[nodiscard]] inline bool has_border(const Material& m) {
+  return m.transparent > 0.0F && (has_facets(m) || has_phong_lobe(m));
 }
 
 /// First material in use for which `holds`; null if there is none.

@@ -39,4 +39,11 @@ void leave_out(Bsdf& b, const Material& material, EffectSet effects, bool all_sp
   b.choice.specular = share.value_or(0.0);
 }
 
+void leave_out(MicrofacetBsdf& b, EffectSet effects, bool all_specular) {
+  leave_out(b, FacetsLeftOut{
+                   .diffuse = effects.contains(Effect::kDiffuseReflection),
+                   .reflection = all_specular || effects.contains(Effect::kMicrofacetLobes),
+                   .transmission = all_specular || effects.contains(Effect::kRefraction)});
+}
+
 }  // namespace raykiln::render

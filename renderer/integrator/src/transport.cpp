@@ -9,6 +9,9 @@ constexpr EffectSet kSources{Effect::kPointLights,       Effect::kSpotLights,
                              Effect::kDirectionalLights, Effect::kAreaEmitters,
                              Effect::kBackground,        Effect::kEnvironment};
 
+/// What the instances from kPhong on have no code for.
+constexpr EffectSet kRich{Effect::kTextures, Effect::kMicrofacetLobes, Effect::kAlphaCoverage};
+
 /// Effects that are no more than a value in the settings or the data.
 constexpr EffectSet kFolded{
     Effect::kPointLights,     Effect::kSpotLights,  Effect::kDirectionalLights,
@@ -61,7 +64,7 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
 Switches switches_for(const Transport& transport) {
   const PathSettings& s = transport.settings;
   if (!(s.left_out - kFolded).empty()) return kReduced;
-  if (s.simulated.contains(Effect::kTextures)) return kGeneral;
+  if (s.simulated.contains_any(kRich)) return kGeneral;
   const bool transmits =
       s.simulated.contains_any({Effect::kDiffuseTransmission, Effect::kRefraction});
   if (transmits || s.bsdf.direction_sampling != DirectionSampling::kBsdf) return kPhong;

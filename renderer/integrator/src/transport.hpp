@@ -35,7 +35,7 @@ struct Transport {
 
 /// Parts of the code that an instance of the shading loop has.
 struct Switches {
-  bool textures = true;      ///< materials may change from point to point
+  bool rich = true;          ///< textures, microfacets: what files of glTF have and the seed has not
   bool transmission = true;  ///< light may come from or go to the far side of a surface
   bool specular = true;      ///< Phong lobes
   bool normals = true;       ///< shading normals
@@ -46,12 +46,12 @@ struct Switches {
 // One instance a switch, each with one switch less than the one before; not one a combination.
 inline constexpr Switches kGeneral{};
 inline constexpr Switches kReduced{.reduced = true};
-inline constexpr Switches kPhong{.textures = false};
-inline constexpr Switches kOpaque{.textures = false, .transmission = false};
-inline constexpr Switches kMatte{.textures = false, .transmission = false, .specular = false};
+inline constexpr Switches kPhong{.rich = false};
+inline constexpr Switches kOpaque{.rich = false, .transmission = false};
+inline constexpr Switches kMatte{.rich = false, .transmission = false, .specular = false};
 inline constexpr Switches kFlatMatte{
-    .textures = false, .transmission = false, .specular = false, .normals = false};
-inline constexpr Switches kDirectFlatMatte{.textures = false,
+    .rich = false, .transmission = false, .specular = false, .normals = false};
+inline constexpr Switches kDirectFlatMatte{.rich = false,
                                            .transmission = false,
                                            .specular = false,
                                            .normals = false,

@@ -12,13 +12,16 @@
 #include "raykiln/shading/punctual_light.hpp"
 #include "raykiln/shading/surface_point.hpp"
 #include "raykiln/shading/texture_lookup.hpp"
+#include "rich_bsdf.hpp"
 #include "vertex_shading.hpp"
 
 namespace raykiln::render {
 
 template <Switches kSwitches>
-using LobesOf = std::conditional_t<!kSwitches.specular, MatteBsdf<kSwitches.normals>,
-                                   std::conditional_t<kSwitches.transmission, Bsdf, OpaqueBsdf>>;
+using LobesOf = std::conditional_t<
+    kSwitches.rich, RichBsdf,
+    std::conditional_t<!kSwitches.specular, MatteBsdf<kSwitches.normals>,
+                       std::conditional_t<kSwitches.transmission, Bsdf, OpaqueBsdf>>>;
 
 template <class Lobes>
 struct Vertex {
@@ -93,8 +96,21 @@ class VertexShader {
         surface_point(scene_.mesh, hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v),
                       kSwitches.normals && scene_.normals);
     const Material& material = material_at(point, hit);
+    if constexpr (kSwitches.rich) {
+      if (!zero(material.facets.absorption) && dot(point.ng, Vec3d(ray.d)) > 0.0) {
+        PathState dimmed = state_;
+        dimmed.throughput *= let_through(material, ray, hit.t);
+        return VertexShader(scene_, dimmed, sinks_).shade_surface(ray, hit, point, material);
+      }
+    }
+    shade_surface(ray, hit, point, material);
+  }
+
+ private:
+  void shade_surface(const Ray& ray, const Hit& hit, const SurfacePoint& point,
+                     const Material& material) {
     add_emission(point, material.emission, ray, hit.t);
-    if (zero(material.diffuse) && zero(material.specular)) return;
+    if (!returns_light(material)) return;
     if (kSwitches.reduced && state_.bounce > 0 && leaves_out(Effect::kIndirectLight)) return;
     const bool last = !kSwitches.bounces || state_.bounce >= settings_.max_depth;
     if (last) sinks_.results[state_.slot].truncated = scene_.has_light;
@@ -111,10 +127,20 @@ class VertexShader {
     scatter(vertex);
   }
 
- private:
+  static bool returns_light(const Material& material) {
+    if constexpr (kSwitches.rich) return scatters(material);
+    return !(zero(material.diffuse) && zero(material.specular));
+  }
+
+  /// Beer and Lambert: what is left of light that came from behind the surface, through the body.
+  static Rgbd let_through(const Material& material, const Ray& ray, float t) {
+    const double way = static_cast<double>(t) * length(Vec3d(ray.d));
+    return glm::exp(-way * Rgbd(material.facets.absorption));
+  }
+
   const Material& material_at(const SurfacePoint& point, const Hit& hit) {
     const Material& material = scene_.scene.materials[point.material];
-    if (!kSwitches.textures || scene_.textures == nullptr) return material;
+    if (!kSwitches.rich || scene_.textures == nullptr) return material;
     paint(*scene_.textures, material, point.material,
           {hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v)}, sinks_.painted);
     return sinks_.painted;
@@ -122,17 +148,34 @@ class VertexShader {
 
   Lobes lobes(const Material& material, const SurfacePoint& point, const Vec3f& wo) const {
     const Vec3f ng(point.ng);
-    if constexpr (!kSwitches.specular) {
+    if constexpr (kSwitches.rich) {
+      return rich_lobes(material, point, ng, wo);
+    } else if constexpr (!kSwitches.specular) {
       return make_matte_bsdf<kSwitches.normals>(material, ng, point.ns, wo, settings_.bsdf);
     } else if constexpr (!kSwitches.transmission) {
       return make_opaque_bsdf(material, ng, point.ns, wo, settings_.bsdf);
     } else {
+      return make_bsdf(material, ng, point.ns, wo, settings_.bsdf);
+    }
+  }
+
+  RichBsdf rich_lobes(const Material& material, const SurfacePoint& point, const Vec3f& ng,
+                      const Vec3f& wo) const {
+    const bool caustic =
+        kSwitches.reduced && state_.met_diffuse && leaves_out(Effect::kCaustics);
+    if (material.model == SurfaceModel::kPhong) {
       Bsdf bsdf = make_bsdf(material, ng, point.ns, wo, settings_.bsdf);
-      if constexpr (kSwitches.reduced) {
-        const bool caustic = state_.met_diffuse && leaves_out(Effect::kCaustics);
-        leave_out(bsdf, material, settings_.left_out, caustic);
-      }
-      return bsdf;
+      if constexpr (kSwitches.reduced) leave_out(bsdf, material, settings_.left_out, caustic);
+      return RichBsdf(bsdf);
+    }
+    if constexpr (kSwitches.reduced) {
+      Material covered = material;
+      if (leaves_out(Effect::kAlphaCoverage)) covered.facets.coverage = 1.0F;
+      MicrofacetBsdf bsdf = make_microfacet_bsdf(covered, ng, point.ns, wo, settings_.bsdf);
+      leave_out(bsdf, settings_.left_out, caustic);
+      return RichBsdf(bsdf);
+    } else {
+      return RichBsdf(make_microfacet_bsdf(material, ng, point.ns, wo, settings_.bsdf));
     }
   }
 
@@ -209,7 +252,7 @@ class VertexShader {
     if (value.f_cos == Rgbd(0.0)) return;
     const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
     Rgbd radiance = sample.radiance;
-    if (kSwitches.textures && scene_.textures != nullptr) {
+    if (kSwitches.rich && scene_.textures != nullptr) {
       radiance *= emission_factor(*scene_.textures, sample.point.material,
                                   {sample.triangle, sample.u, sample.v});
     }

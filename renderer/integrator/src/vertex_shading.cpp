@@ -4,7 +4,7 @@ namespace raykiln::render {
 
 ShadingLoop shading_loop(const Switches& switches) {
   if (switches.reduced) return {"reduced", shade_reduced};
-  if (switches.textures) return {"general", shade_general};
+  if (switches.rich) return {"general", shade_general};
   if (switches.transmission) return {"phong", shade_phong};
   if (switches.specular) return {"opaque", shade_opaque};
   if (switches.normals) return {"matte", shade_matte};

@@ -201,6 +201,9 @@ class Finisher {
       }
     }
     scene_.materials = std::move(draft_.materials.materials);
+    for (Material& material : scene_.materials) {
+      material.facets.absorption *= static_cast<float>(1.0 / draft_.metres_per_unit);
+    }
   }
 
   void warn_undefined(const std::string& name) {

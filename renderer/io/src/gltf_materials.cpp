@@ -47,6 +47,16 @@ void read_specular_glossiness(const JsonAt& at, GltfMaterial& material) {
   note_texture(at, "specularGlossinessTexture");
 }
 
+// The share c of light is left after the distance d: absorption -ln(c)/d. Black is left at 1e-4.
+void read_volume(const JsonAt& at, GltfMaterial& material) {
+  material.thickness = at.number_in("thicknessFactor", 0.0, 0.0, 1e15);
+  note_texture(at, "thicknessTexture");
+  const Rgbd colour = at.vec3_in("attenuationColor", Vec3d(1.0), 0.0, 1.0);
+  if (!at.has("attenuationDistance")) return;
+  const double distance = at.number_in("attenuationDistance", 1.0, 1e-12, 1e15);
+  material.absorption = -glm::log(glm::max(colour, Rgbd(1e-4))) / distance;
+}
+
 void read_extensions(const JsonAt& at, GltfMaterial& material) {
   const auto extensions = at.object("extensions");
   if (!extensions) return;
@@ -64,6 +74,7 @@ void read_extensions(const JsonAt& at, GltfMaterial& material) {
     material.transmission = e->number_in("transmissionFactor", 0.0, 0.0, 1.0);
     note_texture(*e, "transmissionTexture");
   }
+  if (const auto e = extensions->object("KHR_materials_volume")) read_volume(*e, material);
   if (const auto e = extensions->object("KHR_materials_specular")) {
     material.specular = e->number_in("specularFactor", 1.0, 0.0, 1.0);
     material.specular_color = e->vec3_in("specularColorFactor", Vec3d(1.0), 0.0, kLargestWeight);
@@ -144,6 +155,7 @@ std::uint32_t read_material(const JsonAt& at, std::size_t index, GltfTextures& t
   const std::uint32_t id = draft.materials.intern(material.name);
   if (used.used()) draft.textures.of_material(id) = used;
   draft.materials.materials[id] = to_material(material);
+  draft.materials.as_phong[id] = to_phong(material);
   draft.materials.defined[id] = true;
   return id;
 }

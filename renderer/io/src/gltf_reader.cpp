@@ -18,10 +18,11 @@
 namespace raykiln::render::io {
 namespace {
 
-constexpr std::array<std::string_view, 8> kSupported{
+constexpr std::array<std::string_view, 9> kSupported{
     "KHR_lights_punctual",        "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_specular",     "KHR_materials_transmission",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",      "KHR_texture_transform"};
 
 // They change how textures are stored only: a texture that is used and has no other source is an

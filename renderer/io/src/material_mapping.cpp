@@ -40,7 +40,43 @@ double exponent_of_roughness(double roughness) {
   return std::clamp((2.0 / r4 - 2.0) / 4.0, 0.0, kMaxExponent);
 }
 
+namespace {
+
+/// Reflectance at normal incidence of the part that is no metal.
+Rgbd dielectric_f0(const GltfMaterial& gltf) {
+  const double at_normal = (gltf.ior - 1.0) / (gltf.ior + 1.0);
+  return glm::min(Rgbd(at_normal * at_normal) * gltf.specular_color, Rgbd(1.0)) * gltf.specular;
+}
+
+}  // namespace
+
+// Shares of the whole: metal m, clear (1 - m) T, and the rest a dielectric over a diffuse base. Metal and
+// dielectric reflect by Schlick's formula from F0 to F90 with the same facets, so that their mixture is that
+// of F0 and F90.
 Material to_material(const GltfMaterial& gltf) {
+  const double m = gltf.metallic, clear = (1.0 - m) * gltf.transmission;
+  const double opaque = 1.0 - clear, dielectric = (1.0 - m) * (1.0 - gltf.transmission);
+  Material material;
+  material.name = gltf.name;
+  material.model = SurfaceModel::kMicrofacet;
+  material.transparent = static_cast<float>(clear);
+  material.index_of_refraction = static_cast<float>(gltf.ior);
+  material.emission = Rgb(gltf.emissive * (gltf.emissive_strength * gltf.alpha));
+  material.facets.roughness = gltf.roughness;
+  material.facets.edge = 0.0F;
+  if (opaque > 0.0) {
+    material.diffuse = Rgb(dielectric / opaque * gltf.base_color);
+    material.specular = Rgb((m * gltf.base_color + dielectric * dielectric_f0(gltf)) / opaque);
+    material.facets.edge = static_cast<float>((m + dielectric * gltf.specular) / opaque);
+  }
+  material.facets.tint = Rgb(gltf.base_color);
+  material.facets.thin = !(gltf.thickness > 0.0);
+  if (!material.facets.thin) material.facets.absorption = Rgb(gltf.absorption);
+  material.facets.coverage = static_cast<float>(gltf.alpha);
+  return material;
+}
+
+Material to_phong(const GltfMaterial& gltf) {
   const double m = gltf.metallic;
   const double dielectric = 1.0 - m;
   const double at_normal = (gltf.ior - 1.0) / (gltf.ior + 1.0);
@@ -76,6 +112,9 @@ Rgb specular_tint(const GltfMaterial& gltf) {
 }
 
 float largest_albedo(const Material& material) {
+  if (material.model == SurfaceModel::kMicrofacet) {  // its layers share what arrives
+    return std::max({material.diffuse.x, material.diffuse.y, material.diffuse.z});
+  }
   const Rgb sum = material.diffuse + material.specular;
   return std::max({sum.x, sum.y, sum.z});
 }

@@ -39,8 +39,13 @@ struct GltfMaterial {
   double transmission = 0.0;
   double specular = 1.0;
   Rgbd specular_color{1.0};
+  double thickness = 0.0;  ///< above 0: a body
+  Rgbd absorption{0.0};    ///< of its inside, m^-1
 };
+/// Of microfacets.
 [[nodiscard]] Material to_material(const GltfMaterial& gltf);
+/// The nearest of the seed's model: what a sidecar that names a field of that model starts from.
+[[nodiscard]] Material to_phong(const GltfMaterial& gltf);
 
 /// Share of its specular weight, for each channel, that the base colour multiplies.
 [[nodiscard]] Rgb specular_tint(const GltfMaterial& gltf);

@@ -52,6 +52,7 @@ class MaterialTable {
 
   std::vector<Material> materials;
   std::vector<bool> defined;  ///< false: used by a face, never described
+  std::map<std::uint32_t, Material> as_phong;  ///< of those with microfacets: the nearest of the seed's model
 
  private:
   std::map<std::string, std::uint32_t, std::less<>> by_name_;

@@ -73,6 +73,16 @@ bool override_material(const JsonAt& at, Material& material) {
   return !at.diagnostics().failed();
 }
 
+// The sidecar speaks of the seed's model: a material with microfacets becomes one of that, unless nothing but its
+// emission is changed.
+void start_from_phong(const JsonAt& at, std::uint32_t id, MaterialTable& table) {
+  const auto phong = table.as_phong.find(id);
+  if (phong == table.as_phong.end()) return;
+  for (const char* key : {"diffuse", "specular", "transparent", "specular_exp", "index_of_refraction"}) {
+    if (at.has(key)) table.materials[id] = phong->second;
+  }
+}
+
 bool read_materials(const JsonAt& root, SceneDraft& draft) {
   const auto materials = root.object("materials");
   if (!materials) return !root.diagnostics().failed();
@@ -86,6 +96,7 @@ bool read_materials(const JsonAt& root, SceneDraft& draft) {
       continue;
     }
     const std::uint32_t id = draft.materials.intern(key);
+    start_from_phong(at, id, draft.materials);
     if (!override_material(at, draft.materials.materials[id])) return false;
     draft.materials.defined[id] = true;
   }

@@ -12,6 +12,9 @@ namespace raykiln::render {
 namespace {
 
 bool refracts(const Material& m) {
+  if (m.model == SurfaceModel::kMicrofacet) {
+    return m.transparent > 0.0F && !m.facets.thin && m.index_of_refraction != 1.0F;
+  }
   return m.transparent > 0.0F && m.specular != Rgb(0.0F) && m.index_of_refraction != 1.0F;
 }
 

@@ -9,9 +9,11 @@ std::vector<LightModelWarning> light_model_warnings(const LightModel& model, con
   std::size_t broad = 0, refracting = 0;
   for (const std::uint32_t id : use_of(scene).materials) {
     const Material& m = scene.materials[id];
-    if (is_black(m.specular)) continue;
-    broad += m.specular_exp < kMirrorExponent ? 1U : 0U;
-    refracting += m.transparent > 0.0F && m.index_of_refraction != 1.0F ? 1U : 0U;
+    const bool facets = m.model == SurfaceModel::kMicrofacet;
+    if (!facets && is_black(m.specular)) continue;
+    broad += !facets && m.specular_exp < kMirrorExponent ? 1U : 0U;
+    const bool bends = !facets || !m.facets.thin;
+    refracting += bends && m.transparent > 0.0F && m.index_of_refraction != 1.0F ? 1U : 0U;
   }
   std::vector<LightModelWarning> warnings;
   if (model.phong == PhongCosine::kOverCosO && broad > 0) {

@@ -33,6 +33,13 @@ double pixel_solid_angle(const Camera& camera, int height_px) {
 /// Of a pixel: where a highlight is smaller, a sample finds it with less than this probability.
 constexpr double kLeastShare = 1.0 / 16.0;
 
+/// Infinite where there is no lobe. Facets are tilted by up to about alpha = roughness^2, which turns a
+/// reflection by twice that.
+double lobe_solid_angle(const Material& m) {
+  if (m.model == SurfaceModel::kMicrofacet) return 4.0 * kPi * std::pow(m.facets.roughness, 4.0);
+  return is_black(m.specular) ? HUGE_VAL : 2.0 * kPi / (m.specular_exp + 1.0);
+}
+
 // A lobe of exponent e fills the solid angle 2 pi / (e + 1); the mirror image of a point light is no
 // larger. Emitting triangles are found by the path's own rays and do not count.
 std::size_t unresolved_mirrors(const RenderSettings& settings, const Scene& scene) {
@@ -45,7 +52,7 @@ std::size_t unresolved_mirrors(const RenderSettings& settings, const Scene& scen
   return static_cast<std::size_t>(
       std::count_if(use.materials.begin(), use.materials.end(), [&](std::uint32_t id) {
         const Material& m = scene.materials[id];
-        return !is_black(m.specular) && 2.0 * kPi / (m.specular_exp + 1.0) < least;
+        return scatters(m) && lobe_solid_angle(m) < least;
       }));
 }
 

@@ -89,12 +89,15 @@ void paint(const SurfaceTextures& textures, const Material& material, std::uint3
   painted.specular_exp = material.specular_exp;
   painted.index_of_refraction = material.index_of_refraction;
   painted.emission = material.emission;
+  painted.model = material.model;
+  painted.facets = material.facets;
   if (id >= textures.materials.size()) return;
   const MaterialTextures& used = textures.materials[id];
   if (used.base.used()) {
     const Rgb value(texture_value(textures, used.base, at));
     painted.diffuse *= value;
     painted.specular *= Rgb(1.0F) - used.specular_tint * (Rgb(1.0F) - value);
+    painted.facets.tint *= value;
   }
   if (used.emission.used()) {
     painted.emission = Rgb(Rgbd(material.emission) * texture_value(textures, used.emission, at));

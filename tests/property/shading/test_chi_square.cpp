@@ -26,7 +26,8 @@ std::size_t cell_of(const Vec3f& w) {
 /// Midpoint rule over each cell of equal solid angle; only where the value is not 0, because a
 /// sample without a value is not returned. Finer across the rings, where the value ends at the
 /// critical angle.
-std::vector<double> expected_counts(const Bsdf& bsdf, double scale) {
+template <class AnyBsdf>
+std::vector<double> expected_counts(const AnyBsdf& bsdf, double scale) {
   std::vector<double> expected(kRings * kSectors, 0.0);
   const double area = 4.0 * kPi / (kRings * kSectors * kInnerRings * kInnerSectors);
   for (int i = 0; i < kRings * kInnerRings; ++i) {
@@ -43,7 +44,8 @@ std::vector<double> expected_counts(const Bsdf& bsdf, double scale) {
   return expected;
 }
 
-std::vector<double> seen_counts(const Bsdf& bsdf) {
+template <class AnyBsdf>
+std::vector<double> seen_counts(const AnyBsdf& bsdf) {
   std::vector<double> seen(kRings * kSectors, 0.0);
   for (std::uint64_t i = 0; i < kSamples; ++i) {
     const BsdfSample sample = sample_bsdf(bsdf, numbered(i));
@@ -82,6 +84,24 @@ TEST(ChiSquare, SamplesFollowTheDensity) {
               support::sidak_level(static_cast<double>(list.size())))
         << setup.name;
   }
+}
+
+// 4 materials, 4 roughnesses, 5 directions of view, in both senses.
+TEST(ChiSquare, FacetsFollowTheirDensity) {
+  constexpr double kTests = 80.0;
+  int tests = 0;
+  for (const auto& [name, material] : support::facet_materials()) {
+    for (const double roughness : {0.45, 0.6, 0.8, 1.0}) {
+      for (const double degrees : {0.0, 45.0, 80.0, 130.0, 170.0}) {
+        const MicrofacetBsdf bsdf = support::facets_at(material, roughness, at_degrees(degrees));
+        EXPECT_GT(support::chi_square_p(seen_counts(bsdf), expected_counts(bsdf, 1.0)),
+                  support::sidak_level(kTests))
+            << name << ' ' << roughness << " at " << degrees;
+        ++tests;
+      }
+    }
+  }
+  EXPECT_EQ(tests, kTests);
 }
 
 // The test can fail: a density that forgot a mixture weight of 0.9 is refused.

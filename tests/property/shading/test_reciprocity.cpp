@@ -46,6 +46,24 @@ TEST(Reciprocity, HoldsForThePhysicalLobe) {
   }
 }
 
+// Every term of the opaque share and of a sheet. `tint` is the same both ways.
+TEST(Reciprocity, HoldsForFacets) {
+  for (const auto& [name, material] : support::facet_materials()) {
+    if (!material.facets.thin) continue;
+    for (const double roughness : {0.2, 0.5, 1.0}) {
+      for (std::uint64_t i = 0; i < 5000; ++i) {
+        const Vec3f a = random_direction(i, 1), b = random_direction(i, 2);
+        const auto f = [&](const Vec3f& from, const Vec3f& to) {
+          return evaluate(support::facets_at(material, roughness, to), from).f_cos.x /
+                 std::abs(static_cast<double>(from.z));
+        };
+        const double forth = f(a, b), back = f(b, a);
+        EXPECT_NEAR(forth, back, 1e-4 * forth + 1e-12) << name << ' ' << roughness;
+      }
+    }
+  }
+}
+
 // f(a, b) has 1/cos_b and f(b, a) has 1/cos_a: not reciprocal, by exactly cos_a/cos_b.
 TEST(Reciprocity, FailsForTheSeedsLobeByTheRatioOfCosines) {
   const Material material = make_material(0.0F, 1.0F, 0.0F, 10.0);

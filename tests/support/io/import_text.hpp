@@ -120,6 +120,10 @@ inline void expect_sound(const ImportedScene& imported) {
     ASSERT_TRUE(finite(m.diffuse) && finite(m.specular) && finite(m.emission));
     ASSERT_TRUE(m.transparent >= 0.0F && m.transparent <= 1.0F);
     ASSERT_TRUE(m.specular_exp >= 0.0 && m.specular_exp <= 1e15);
+    ASSERT_TRUE(m.facets.roughness >= 0.0 && m.facets.roughness <= 1.0);
+    ASSERT_TRUE(m.facets.edge >= 0.0F && m.facets.edge <= 1.0F);
+    ASSERT_TRUE(m.facets.coverage >= 0.0F && m.facets.coverage <= 1.0F);
+    ASSERT_TRUE(finite(m.facets.tint) && finite(m.facets.absorption));
     ASSERT_TRUE(m.index_of_refraction > 0.0F && std::isfinite(m.index_of_refraction));
   }
   if (scene.textures != nullptr) expect_sound(*scene.textures, scene);

@@ -49,6 +49,14 @@ TEST(ShadingLoops, TheLeanestThatHoldsWhatIsSimulatedRuns) {
   EXPECT_EQ(loop_of(support::everything(), "auto"), "phong");
 }
 
+TEST(ShadingLoops, WhatTheSeedHasNotNeedsTheGeneralOne) {
+  Material metal;
+  metal.model = SurfaceModel::kMicrofacet;
+  metal.specular = Rgb(0.8F);
+  EXPECT_EQ(loop_of(cornell_with(metal), "auto"), "general");
+  EXPECT_EQ(loop_of(cornell_with(metal), "without=microfacet_lobes"), "reduced");
+}
+
 TEST(ShadingLoops, AllIsTheGeneralOne) {
   for (const support::EffectScene& scene : support::named_effect_scenes()) {
     EXPECT_EQ(loop_of(scene, "all"), "general") << scene.name;

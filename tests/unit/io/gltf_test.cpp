@@ -284,28 +284,68 @@ Material material_of(const Json& material) {
 TEST(GltfMaterial, MetalReflectsItsColour) {
   const Material m = material_of({{"pbrMetallicRoughness",
       {{"baseColorFactor", {0.9, 0.6, 0.3, 1}}, {"metallicFactor", 1}, {"roughnessFactor", 0.5}}}});
+  EXPECT_EQ(m.model, SurfaceModel::kMicrofacet);
   EXPECT_EQ(m.diffuse, Rgb(0.0F));
   EXPECT_FLOAT_EQ(m.specular.x, 0.9F);
-  EXPECT_NEAR(m.specular_exp, 7.5, 1e-9);
+  EXPECT_EQ(m.facets.edge, 1.0F);
+  EXPECT_EQ(m.facets.roughness, 0.5);
 }
 
 TEST(GltfMaterial, DielectricsReflectFourPercent) {
   const Material m = material_of({{"pbrMetallicRoughness",
       {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}}}});
   EXPECT_FLOAT_EQ(m.specular.x, 0.04F);
-  EXPECT_FLOAT_EQ(m.diffuse.x, 0.48F);
+  EXPECT_FLOAT_EQ(m.diffuse.x, 0.5F);
+  EXPECT_EQ(m.facets.edge, 1.0F);
+  EXPECT_EQ(m.transparent, 0.0F);
 }
 
-TEST(GltfMaterial, TransmissionAndIndexMakeGlass) {
-  const Material m = material_of(
-      {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
-       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                       {"KHR_materials_ior", {{"ior", 1.33}}}}}});
-  EXPECT_EQ(m.transparent, 1.0F);
-  EXPECT_EQ(m.diffuse, Rgb(0.0F));
-  EXPECT_EQ(m.specular, Rgb(1.0F));
-  EXPECT_FLOAT_EQ(m.index_of_refraction, 1.33F);
-  EXPECT_EQ(m.specular_exp, 1e10);
+TEST(GltfMaterial, SpecularScalesBothEnds) {
+  const Material m = material_of({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+      {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 100}}}}}}});
+  EXPECT_FLOAT_EQ(m.specular.x, 0.02F);
+  EXPECT_FLOAT_EQ(m.specular.y, 0.04F);
+  EXPECT_FLOAT_EQ(m.specular.z, 0.5F);
+  EXPECT_FLOAT_EQ(m.facets.edge, 0.5F);
+}
+
+TEST(GltfMaterial, TransmissionIsASheetAndVolumeABody) {
+  Json glass = {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}, {"baseColorFactor", {1, 0.5, 0, 1}}}},
+                {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                {"KHR_materials_ior", {{"ior", 1.33}}}}}};
+  const Material sheet = material_of(glass);
+  EXPECT_EQ(sheet.transparent, 1.0F);
+  EXPECT_TRUE(sheet.facets.thin);
+  EXPECT_EQ(sheet.facets.tint, Rgb(1.0F, 0.5F, 0.0F));
+  EXPECT_FLOAT_EQ(sheet.index_of_refraction, 1.33F);
+  EXPECT_EQ(sheet.facets.roughness, 0.0);
+  glass["extensions"]["KHR_materials_volume"] = {
+      {"thicknessFactor", 1}, {"attenuationDistance", 2}, {"attenuationColor", {1, 0.5, 0}}};
+  const Material body = material_of(glass);
+  EXPECT_FALSE(body.facets.thin);
+  EXPECT_EQ(body.facets.absorption.x, 0.0F);
+  EXPECT_FLOAT_EQ(body.facets.absorption.y, std::log(2.0F) / 2.0F);
+  EXPECT_FLOAT_EQ(body.facets.absorption.z, std::log(1e4F) / 2.0F);
+}
+
+// A field of the seed's model in the sidecar makes it one of that model, as near as it gets.
+TEST(GltfMaterial, TheSidecarTurnsToTheSeedsModel) {
+  GltfBuilder builder;
+  builder.triangle();
+  builder.root["materials"] = Json::array({{{"name", "a"}, {"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}}}});
+  builder.root["meshes"][0]["primitives"][0]["material"] = 0;
+  const auto with = [&](const char* fields) {
+    return expect_scene({{"a.gltf", builder.gltf()},
+                         {"raykiln.json", std::string(R"({"materials": {"a": )") + fields + "}}"}})
+        .scene.materials[0];
+  };
+  const Material phong = with(R"({"diffuse": [0.1, 0.1, 0.1]})");
+  EXPECT_EQ(phong.model, SurfaceModel::kPhong);
+  EXPECT_EQ(phong.diffuse, Rgb(0.1F));
+  EXPECT_NEAR(phong.specular_exp, 7.5, 1e-9);
+  const Material lamp = with(R"({"emission": [1, 1, 1]})");
+  EXPECT_EQ(lamp.model, SurfaceModel::kMicrofacet);
+  EXPECT_EQ(lamp.emission, Rgb(1.0F));
 }
 
 TEST(GltfMaterial, EmissionHasAStrength) {
@@ -317,9 +357,10 @@ TEST(GltfMaterial, EmissionHasAStrength) {
 
 TEST(GltfMaterial, AlphaCountsOnlyWhenBlended) {
   const Json pbr = {{"baseColorFactor", {1, 1, 1, 0.25}}, {"metallicFactor", 0}};
-  EXPECT_EQ(material_of({{"pbrMetallicRoughness", pbr}}).transparent, 0.0F);
+  EXPECT_EQ(material_of({{"pbrMetallicRoughness", pbr}}).facets.coverage, 1.0F);
   const Json blend = {{"pbrMetallicRoughness", pbr}, {"alphaMode", "BLEND"}};
-  EXPECT_FLOAT_EQ(material_of(blend).transparent, 0.75F);
+  EXPECT_FLOAT_EQ(material_of(blend).facets.coverage, 0.25F);
+  EXPECT_EQ(material_of(blend).transparent, 0.0F);
 }
 
 TEST(GltfMaterial, EqualNamesStayApart) {

@@ -139,6 +139,24 @@ TEST(Textures, AHalfWhiteEmitterLightsAPatchAsItsWhiteHalfDoes) {
   }
 }
 
+// A cube of index 1 that absorbs shows exp(-absorption times the way through it) of what is behind.
+TEST(Facets, ABodyDimsWhatIsBehindIt) {
+  SceneBuilder b;
+  Material body;
+  body.model = SurfaceModel::kMicrofacet;
+  body.transparent = 1.0F;
+  body.index_of_refraction = 1.0F;
+  body.facets.thin = false;
+  body.facets.absorption = {0.0F, 0.5F, 2.0F};
+  b.box({-1, -1, -0.75F}, {1, 1, 0.75F}, b.material(body));
+  b.scene().background = Rgb(2.0F);
+  b.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 1e-3);
+  const Estimate e = support::estimate(support::render_all(*b.prepare(), square(2, 4), 4));
+  EXPECT_NEAR(e.mean.x, 2.0, 1e-6);
+  EXPECT_NEAR(e.mean.y, 2.0 * std::exp(-0.75), 1e-6);
+  EXPECT_NEAR(e.mean.z, 2.0 * std::exp(-3.0), 1e-6);
+}
+
 // A picture that is black all over makes a dark scene, and nothing that is not finite.
 TEST(Textures, ABlackEmitterIsDark) {
   TextureImage black = four();

@@ -17,6 +17,8 @@
   ROW(DiffuseTransmission, diffuse_transmission) \
   ROW(GlossyLobes, glossy_lobes)                 \
   ROW(Mirrors, mirrors)                          \
+  ROW(MicrofacetLobes, microfacet_lobes)         \
+  ROW(AlphaCoverage, alpha_coverage)             \
   ROW(Refraction, refraction)                    \
   ROW(Fresnel, fresnel)                          \
   ROW(ShadingNormals, shading_normals)           \

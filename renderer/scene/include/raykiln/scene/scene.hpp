@@ -25,8 +25,26 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> corner_normals;  ///< empty, or one a triangle; kNoNormal
 };
 
+/// Which formulas a material follows.
+enum class SurfaceModel : std::uint8_t {
+  kPhong,       ///< the seed's BSDF, section 3
+  kMicrofacet,  ///< GGX: glTF's metallic-roughness model
+};
+
+/// What a microfacet surface has beside the common members of Material.
+struct Microfacets {
+  double roughness = 1.0;  ///< [0, 1]; alpha is its square
+  float edge = 1.0F;       ///< reflectance of the opaque share at grazing; `specular` is that at normal
+  Rgb tint{1.0F};          ///< of what the transparent share lets through, [0, 1]
+  bool thin = true;        ///< a sheet, which does not bend light; else the border of a body
+  Rgb absorption{0.0F};    ///< m^-1, inside of the body
+  float coverage = 1.0F;   ///< share of the light that meets the surface; the rest passes straight on
+};
+
 /// The seed's BSDF, section 3: f = diffuse [transparent a/(2 pi) + (1 - transparent) a/pi]
 ///   + specular [transparent f_st + (1 - transparent) f_ph]; the RGB weights contain a.
+/// Or kMicrofacet: (1 - transparent) of a diffuse base of albedo `diffuse` below facets that reflect from
+/// `specular` at normal to `facets.edge` at grazing incidence, and `transparent` of a clear border.
 struct Material {
   std::string name;
   Rgb diffuse{0.0F};
@@ -35,7 +53,17 @@ struct Material {
   double specular_exp = 1.0; ///< Phong exponent e >= 0
   float index_of_refraction = 1.0F;  ///< of the side behind the geometric normal; vacuum in front
   Rgb emission{0.0F};                ///< radiance, W sr^-1 m^-2, both sides
+  SurfaceModel model = SurfaceModel::kPhong;
+  Microfacets facets{};              ///< of kMicrofacet only
 };
+
+/// Does it reflect or let through anything at all?
+[[nodiscard]] inline bool scatters(const Material& m) {
+  const Rgb black(0.0F);
+  if (m.diffuse != black || m.specular != black) return true;
+  return m.model == SurfaceModel::kMicrofacet &&
+         (m.transparent > 0.0F || m.facets.edge > 0.0F || m.facets.coverage < 1.0F);
+}
 
 /// Pinhole. right, up, forward are orthonormal (right = forward x up); fov is the full vertical
 /// angle. Pixel (0, 0) is at the top left. In double: from 10^6 times the scene's size one step of a

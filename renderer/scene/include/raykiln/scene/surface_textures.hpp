@@ -39,7 +39,7 @@ struct TextureUse {
 
 /// What the textures of one material multiply. The material holds the values of a white texture.
 struct MaterialTextures {
-  TextureUse base;         ///< multiplies diffuse, and the tinted share of specular
+  TextureUse base;         ///< multiplies diffuse, what goes through facets, and the tinted share of specular
   Rgb specular_tint{0.0F}; ///< that share, [0, 1] for each channel
   TextureUse emission;     ///< multiplies emission
 

@@ -1,0 +1,26 @@
+// The BSDF of a material of either model.
+#pragma once
+
+#include <variant>
+
+#include "raykiln/shading/bsdf.hpp"
+#include "raykiln/shading/microfacet_bsdf.hpp"
+
+namespace raykiln::render {
+
+struct RichBsdf {
+  Vec3f ng{0.0F};  ///< geometric normal, on the side of wo
+  std::variant<Bsdf, MicrofacetBsdf> of;
+
+  explicit RichBsdf(const Bsdf& phong) : ng(phong.ng), of(phong) {}
+  explicit RichBsdf(const MicrofacetBsdf& facets) : ng(facets.ng), of(facets) {}
+};
+
+inline BsdfValue evaluate(const RichBsdf& bsdf, const Vec3f& wi) {
+  return std::visit([&](const auto& b) { return evaluate(b, wi); }, bsdf.of);
+}
+inline BsdfSample sample_bsdf(const RichBsdf& bsdf, const VertexKey& vertex) {
+  return std::visit([&](const auto& b) { return sample_bsdf(b, vertex); }, bsdf.of);
+}
+
+}  // namespace raykiln::render
