@@ -173,6 +173,8 @@ GltfBuilder full_gltf() {
       {"index", 0}, {"texCoord", 0},
       {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"rotation", 0.5}, {"scale", {2, 2}}}}}}};
   material["emissiveTexture"]["index"] = 0;
+  material["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"] = 0;
+  material["normalTexture"] = {{"index", 0}, {"scale", 0.5}};
   return builder;
 }
 

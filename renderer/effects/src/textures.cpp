@@ -15,7 +15,9 @@ const Material* textured_material(const EffectView& view) {
   for (const std::uint32_t id : view.use.materials) {
     if (id >= textures.size()) continue;
     const Material& m = view.scene.materials[id];
-    const bool base = textures[id].base.used() && is_reflecting(m);
+    const MaterialTextures& used = textures[id];
+    const bool base =
+        (used.base.used() || used.roughness.used() || used.normal.used()) && is_reflecting(m);
     if (base || (textures[id].emission.used() && !is_black(m.emission))) return &m;
   }
   return nullptr;

@@ -92,11 +92,16 @@ class VertexShader {
       if (scene_.environment != nullptr) add_environment(ray);
       return;
     }
-    const SurfacePoint point =
+    SurfacePoint point =
         surface_point(scene_.mesh, hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v),
                       kSwitches.normals && scene_.normals);
     const Material& material = material_at(point, hit);
     if constexpr (kSwitches.rich) {
+      if (scene_.textures != nullptr) {
+        const auto bent = mapped_normal(*scene_.textures, scene_.mesh, point.material, place_of(hit),
+                                        point.ns);
+        if (bent) point.ns = *bent;
+      }
       if (!zero(material.facets.absorption) && dot(point.ng, Vec3d(ray.d)) > 0.0) {
         PathState dimmed = state_;
         dimmed.throughput *= let_through(material, ray, hit.t);
@@ -138,11 +143,14 @@ class VertexShader {
     return glm::exp(-way * Rgbd(material.facets.absorption));
   }
 
+  static TrianglePlace place_of(const Hit& hit) {
+    return {hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v)};
+  }
+
   const Material& material_at(const SurfacePoint& point, const Hit& hit) {
     const Material& material = scene_.scene.materials[point.material];
     if (!kSwitches.rich || scene_.textures == nullptr) return material;
-    paint(*scene_.textures, material, point.material,
-          {hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v)}, sinks_.painted);
+    paint(*scene_.textures, material, point.material, place_of(hit), sinks_.painted);
     return sinks_.painted;
   }
 

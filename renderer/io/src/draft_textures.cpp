@@ -16,6 +16,11 @@ std::uint64_t bytes_of(const PictureFile& picture) {
   return picture.srgb8.size() + picture.linear.size() * sizeof(float);
 }
 
+/// The inverse of sRGB's curve.
+double display_value(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
 struct Values {
   std::uint64_t clamped = 0;
   double scale = 1.0;
@@ -28,7 +33,7 @@ std::optional<Values> make_usable(std::vector<float>& values, PictureRole role) 
   float largest = 1.0F;
   for (float& value : values) {
     if (!std::isfinite(value)) return std::nullopt;
-    const bool outside = value < 0.0F || (value > 1.0F && role == PictureRole::kColour);
+    const bool outside = value < 0.0F || (value > 1.0F && role != PictureRole::kEmission);
     if (outside) {
       ++result.clamped;
       value = std::clamp(value, 0.0F, 1.0F);
@@ -83,16 +88,17 @@ std::optional<std::uint32_t> DraftTextures::beside(const SceneFiles& files,
 }
 
 // Also what is left out is remembered: decoding a damaged picture once for each of a hundred thousand
-// materials would take hours. PNG and JPEG of 8 bits are the same for both roles and held once.
+// materials would take hours. PNG and JPEG of 8 bits are the same for all roles and held once.
 std::optional<std::uint32_t> DraftTextures::embedded(const std::string& name, std::string_view bytes,
                                                      const PictureUser& user, PictureRole role,
                                                      Diagnostics& diagnostics) {
   if (const auto id = known(name, role)) return id;
-  const PictureRole other =
-      role == PictureRole::kColour ? PictureRole::kEmission : PictureRole::kColour;
-  const auto twin = known(name, other);
-  const bool shared = twin && (*twin == kNoTexture || !images[*twin].srgb8.empty());
-  const auto id = shared ? twin : decode(name, bytes, user, role, diagnostics);
+  std::optional<std::uint32_t> id;
+  for (const PictureRole other : {PictureRole::kColour, PictureRole::kEmission, PictureRole::kData}) {
+    const auto twin = known(name, other);
+    if (twin && (*twin == kNoTexture || !images[*twin].srgb8.empty())) id = twin;
+  }
+  if (!id) id = decode(name, bytes, user, role, diagnostics);
   if (id) by_name_.emplace(std::pair(name, role), *id);
   return id;
 }
@@ -122,6 +128,11 @@ std::optional<std::uint32_t> DraftTextures::decode(const std::string& name, std:
                     user, diagnostics);
   }
   auto& picture = std::get<PictureFile>(read);
+  if (role == PictureRole::kData && picture.format == PictureFormat::kPng) {
+    for (float& value : picture.linear) {  // of 16 bits, read as colours
+      value = static_cast<float>(display_value(static_cast<double>(value)));
+    }
+  }
   const auto values = make_usable(picture.linear, role);
   if (!values) {
     return unusable(ImportErrorCode::kNotFinite, label + " has values that are not finite", user,

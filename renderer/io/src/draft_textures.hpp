@@ -22,8 +22,8 @@ struct PictureUser {
 };
 
 /// What a picture is read for. Colours are at most 1; emission may be anything, and is stored divided by
-/// a power of two so that its values are at most 1, too.
-enum class PictureRole { kColour, kEmission };
+/// a power of two so that its values are at most 1, too. Data are numbers in [0, 1], bytes as they are.
+enum class PictureRole { kColour, kEmission, kData };
 
 /// Pictures are decoded when a material names them, each once, whether that succeeds or not, within the
 /// limits of the import.

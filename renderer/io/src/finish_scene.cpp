@@ -239,7 +239,7 @@ class Finisher {
     for (std::size_t i = 0; i < draft.materials.size(); ++i) {
       if (!scale_emission(i)) return false;
       MaterialTextures& used = draft.materials[i];
-      for (TextureUse* use : {&used.base, &used.emission}) {
+      for (TextureUse* use : used.uses()) {
         keep(*use);
         if (use->used()) set_used[use->uv_set] = true;
       }
@@ -281,7 +281,7 @@ class Finisher {
     std::uint64_t missing = 0;
     for (std::size_t i = 0; i < scene_.mesh.triangles.size(); ++i) {
       const MaterialTextures& used = textures.materials[scene_.mesh.material_ids[i]];
-      for (const TextureUse* use : {&used.base, &used.emission}) {
+      for (const TextureUse* use : used.uses()) {
         if (!use->used()) continue;
         const auto& corners = textures.uv_sets[use->uv_set].corners;
         const bool complete = i < corners.size() && corners[i][0] != kNoUv &&

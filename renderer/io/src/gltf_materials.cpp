@@ -35,7 +35,6 @@ void read_metallic_roughness(const JsonAt& at, GltfMaterial& material) {
   set_base_color(at, "baseColorFactor", material);
   material.metallic = at.number_in("metallicFactor", 1.0, 0.0, 1.0);
   material.roughness = at.number_in("roughnessFactor", 1.0, 0.0, 1.0);
-  note_texture(at, "metallicRoughnessTexture");
 }
 
 // Written as a dielectric whose reflectance is the specular colour.
@@ -90,6 +89,23 @@ void read_emission(const JsonAt& at, GltfMaterial& material) {
   material.emissive = at.vec3_in("emissiveFactor", Vec3d(0.0), 0.0, kLargestWeight);
 }
 
+bool read_surface_textures(const JsonAt& at, const std::optional<JsonAt>& roughness,
+                           GltfTextures& textures, const GltfMaterial& material,
+                           MaterialTextures& used) {
+  const auto normal = textures.use(at, "normalTexture", PictureRole::kData);
+  if (!normal) return false;
+  used.normal = *normal;
+  if (used.normal.used()) {
+    used.normal_scale = at.object("normalTexture")->number_in("scale", 1.0, -1e3, 1e3);
+  }
+  if (!roughness) return !at.diagnostics().failed();
+  const auto mixed = textures.use(*roughness, "metallicRoughnessTexture", PictureRole::kData);
+  if (!mixed) return false;
+  used.roughness = *mixed;
+  used.metal = metallic_roughness(material);
+  return !at.diagnostics().failed();
+}
+
 // A base colour texture of a black base colour, or an emissive one of no emission, is not read.
 bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& material,
                    MaterialTextures& used) {
@@ -108,6 +124,7 @@ bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& mater
       at.warn(ImportWarningCode::kIgnoredFeature, "the alpha of textures is ignored");
     }
   }
+  if (!read_surface_textures(at, roughness, textures, material, used)) return false;
   if (!at.has("emissiveTexture") || material.emissive == Rgbd(0.0)) {
     return !at.diagnostics().failed();
   }
@@ -148,7 +165,6 @@ std::uint32_t read_material(const JsonAt& at, std::size_t index, GltfTextures& t
   read_emission(at, material);
   read_extensions(at, material);
   apply_alpha_mode(at, material);
-  note_texture(at, "normalTexture");
   note_texture(at, "occlusionTexture");
   MaterialTextures used;
   if (!at.diagnostics().failed() && !read_textures(at, textures, material, used)) return 0;

@@ -193,8 +193,11 @@ bool GltfMeshes::place_uvs(const JsonAt& at, const JsonAt& attributes, std::size
   const DraftTextures& textures = draft_->textures;
   if (placed.material >= textures.materials.size()) return true;
   const MaterialTextures& used = textures.materials[placed.material];
-  const auto reads = [set](const TextureUse& use) { return use.used() && use.uv_set == set; };
-  if (!reads(used.base) && !reads(used.emission)) return true;
+  const auto uses = used.uses();
+  const bool reads = std::any_of(uses.begin(), uses.end(), [set](const TextureUse* use) {
+    return use->used() && use->uv_set == set;
+  });
+  if (!reads) return true;
   const char* key = set == 0 ? "TEXCOORD_0" : "TEXCOORD_1";
   if (!attributes.has(key)) return true;  // finish_scene lists it
   const JsonAt where = attributes.member(key);

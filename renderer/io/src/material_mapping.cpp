@@ -50,26 +50,22 @@ Rgbd dielectric_f0(const GltfMaterial& gltf) {
 
 }  // namespace
 
-// Shares of the whole: metal m, clear (1 - m) T, and the rest a dielectric over a diffuse base. Metal and
-// dielectric reflect by Schlick's formula from F0 to F90 with the same facets, so that their mixture is that
-// of F0 and F90.
+MetallicRoughness metallic_roughness(const GltfMaterial& gltf) {
+  return {.base = Rgb(gltf.base_color),
+          .metallic = static_cast<float>(gltf.metallic),
+          .roughness = gltf.roughness,
+          .f0 = Rgb(dielectric_f0(gltf)),
+          .edge = static_cast<float>(gltf.specular),
+          .transmission = static_cast<float>(gltf.transmission)};
+}
+
 Material to_material(const GltfMaterial& gltf) {
-  const double m = gltf.metallic, clear = (1.0 - m) * gltf.transmission;
-  const double opaque = 1.0 - clear, dielectric = (1.0 - m) * (1.0 - gltf.transmission);
   Material material;
   material.name = gltf.name;
   material.model = SurfaceModel::kMicrofacet;
-  material.transparent = static_cast<float>(clear);
+  mix_metal(metallic_roughness(gltf), material);
   material.index_of_refraction = static_cast<float>(gltf.ior);
   material.emission = Rgb(gltf.emissive * (gltf.emissive_strength * gltf.alpha));
-  material.facets.roughness = gltf.roughness;
-  material.facets.edge = 0.0F;
-  if (opaque > 0.0) {
-    material.diffuse = Rgb(dielectric / opaque * gltf.base_color);
-    material.specular = Rgb((m * gltf.base_color + dielectric * dielectric_f0(gltf)) / opaque);
-    material.facets.edge = static_cast<float>((m + dielectric * gltf.specular) / opaque);
-  }
-  material.facets.tint = Rgb(gltf.base_color);
   material.facets.thin = !(gltf.thickness > 0.0);
   if (!material.facets.thin) material.facets.absorption = Rgb(gltf.absorption);
   material.facets.coverage = static_cast<float>(gltf.alpha);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "raykiln/scene/scene.hpp"
+#include "raykiln/scene/metallic_roughness.hpp"
 
 namespace raykiln::render::io {
 
@@ -42,6 +42,7 @@ struct GltfMaterial {
   double thickness = 0.0;  ///< above 0: a body
   Rgbd absorption{0.0};    ///< of its inside, m^-1
 };
+[[nodiscard]] MetallicRoughness metallic_roughness(const GltfMaterial& gltf);
 /// Of microfacets.
 [[nodiscard]] Material to_material(const GltfMaterial& gltf);
 /// The nearest of the seed's model: what a sidecar that names a field of that model starts from.

@@ -17,11 +17,12 @@ std::array<float, 256> decoded_bytes() {
   return values;
 }
 
-Rgbd texel(const TextureImage& image, int x, int y) {
+Rgbd texel(const TextureImage& image, bool data, int x, int y) {
   static const std::array<float, 256> kDecoded = decoded_bytes();
   const std::size_t i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                              static_cast<std::size_t>(x));
   if (image.srgb8.empty()) return Rgbd(image.linear[i], image.linear[i + 1], image.linear[i + 2]);
+  if (data) return Rgbd(image.srgb8[i], image.srgb8[i + 1], image.srgb8[i + 2]) / 255.0;
   return Rgbd(kDecoded[image.srgb8[i]], kDecoded[image.srgb8[i + 1]], kDecoded[image.srgb8[i + 2]]);
 }
 
@@ -50,7 +51,7 @@ Rgbd texture_value(const TextureImage& image, const TextureUse& use, double u, d
   const double x = near_unit(u, use.wrap_u) * image.width;
   const double y = near_unit(v, use.wrap_v) * image.height;
   const auto at = [&](int i, int j) {
-    return texel(image, wrapped(i, image.width, use.wrap_u), wrapped(j, image.height, use.wrap_v));
+    return texel(image, use.data, wrapped(i, image.width, use.wrap_u), wrapped(j, image.height, use.wrap_v));
   };
   if (use.filter == TextureFilter::kNearest) {
     return at(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
@@ -93,7 +94,14 @@ void paint(const SurfaceTextures& textures, const Material& material, std::uint3
   painted.facets = material.facets;
   if (id >= textures.materials.size()) return;
   const MaterialTextures& used = textures.materials[id];
-  if (used.base.used()) {
+  if (used.roughness.used() && material.model == SurfaceModel::kMicrofacet) {
+    const Rgbd value = texture_value(textures, used.roughness, at);
+    MetallicRoughness here = used.metal;
+    if (used.base.used()) here.base *= Rgb(texture_value(textures, used.base, at));
+    here.roughness *= value.y;
+    here.metallic *= static_cast<float>(value.z);
+    mix_metal(here, painted);
+  } else if (used.base.used()) {
     const Rgb value(texture_value(textures, used.base, at));
     painted.diffuse *= value;
     painted.specular *= Rgb(1.0F) - used.specular_tint * (Rgb(1.0F) - value);
@@ -111,12 +119,50 @@ Rgbd emission_factor(const SurfaceTextures& textures, std::uint32_t material,
   return use.used() ? texture_value(textures, use, at) : Rgbd(1.0);
 }
 
+// The frame of the picture on the triangle: x along growing u, y against growing v, which points down.
+std::optional<Vec3f> mapped_normal(const SurfaceTextures& textures, const TriangleMesh& mesh,
+                                   std::uint32_t material, const TrianglePlace& at, const Vec3f& ns) {
+  if (material >= textures.materials.size()) return std::nullopt;
+  const MaterialTextures& used = textures.materials[material];
+  if (!used.normal.used()) return std::nullopt;
+  const UvSet& set = textures.uv_sets[used.normal.uv_set];
+  if (at.id >= set.corners.size()) return std::nullopt;
+  const auto& corner = set.corners[at.id];
+  if (corner[0] == kNoUv || corner[1] == kNoUv || corner[2] == kNoUv) return std::nullopt;
+  const auto& vertex = mesh.triangles[at.id];
+  const Vec3d p(mesh.positions[vertex[0]]);
+  std::array<Vec3d, 2> edge;
+  std::array<double, 2> du{}, dv{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    edge[k] = Vec3d(mesh.positions[vertex[k + 1]]) - p;
+    const Vec2f& from = set.coordinates[corner[0]];
+    const Vec2f& to = set.coordinates[corner[k + 1]];
+    const Vec3d step(static_cast<double>(to.x) - static_cast<double>(from.x),
+                     static_cast<double>(to.y) - static_cast<double>(from.y), 0.0);
+    du[k] = dot(used.normal.u_row, step);
+    dv[k] = dot(used.normal.v_row, step);
+  }
+  const double turned = du[0] * dv[1] - du[1] * dv[0] < 0.0 ? -1.0 : 1.0;
+  const Vec3d n(ns), along = turned * (dv[1] * edge[0] - dv[0] * edge[1]);
+  const Vec3d down = turned * (du[0] * edge[1] - du[1] * edge[0]);
+  const Vec3d x = along - dot(along, n) * n;
+  const double size = length(x);
+  if (!(size > 0.0)) return std::nullopt;
+  Vec3d y = cross(n, x / size);
+  if (dot(y, down) > 0.0) y = -y;
+  const Rgbd value = 2.0 * texture_value(textures, used.normal, at) - Rgbd(1.0);
+  const Vec3d mapped = used.normal_scale * (value.x / size * x + value.y * y) + value.z * n;
+  const double whole = length(mapped);
+  if (!(whole > 0.0)) return std::nullopt;
+  return Vec3f(mapped / whole);
+}
+
 double mean_largest_channel(const TextureImage& image) {
   double sum = 0.0;
   for (int y = 0; y < image.height; ++y) {
     double row = 0.0;
     for (int x = 0; x < image.width; ++x) {
-      const Rgbd value = texel(image, x, y);
+      const Rgbd value = texel(image, false, x, y);
       row += std::max({value.x, value.y, value.z});
     }
     sum += row;

@@ -77,7 +77,7 @@ inline void expect_sound(const SurfaceTextures& textures, const Scene& scene) {
     for (const float value : image.linear) ASSERT_TRUE(value >= 0.0F && value <= 1.0F);
   }
   for (const MaterialTextures& used : textures.materials) {
-    for (const TextureUse* use : {&used.base, &used.emission}) {
+    for (const TextureUse* use : used.uses()) {
       if (!use->used()) continue;
       ASSERT_LT(use->image, textures.images.size());
       ASSERT_LT(use->uv_set, textures.uv_sets.size());

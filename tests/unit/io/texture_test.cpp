@@ -297,6 +297,22 @@ TEST(GltfTexture, MetalsAreTintedAndEmissionIsTextured) {
   EXPECT_EQ(imported.scene.textures->images.size(), 2U);
 }
 
+TEST(GltfTexture, RoughnessAndNormalsAreData) {
+  const auto imported = expect_scene(gltf(
+      R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "roughnessFactor": 0.75,
+           "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 0}},
+          "normalTexture": {"index": 0, "scale": 0.5, "texCoord": 1}})", kImages));
+  const MaterialTextures& used = imported.scene.textures->materials[0];
+  EXPECT_EQ(imported.scene.textures->images.size(), 1U);
+  EXPECT_FALSE(used.base.data);
+  EXPECT_TRUE(used.roughness.data && used.normal.data);
+  EXPECT_EQ(used.normal_scale, 0.5);
+  EXPECT_EQ(used.metal.roughness, 0.75);
+  EXPECT_EQ(used.metal.base, Rgb(0.5F));
+  EXPECT_EQ(imported.scene.textures->uv_sets[1].corners.size(), 1U);
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 0U);
+}
+
 TEST(GltfTexture, WhatCannotBeHadIsNamed) {
   const auto refused = [](const std::string& info) { return expect_error(gltf(base(info), kImages)); };
   EXPECT_EQ(refused(R"({"index": 2})").code, Code::kFileMissing);

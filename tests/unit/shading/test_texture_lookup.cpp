@@ -119,6 +119,58 @@ TEST(Texture, TrianglesWithoutCoordinatesAreWhite) {
   EXPECT_EQ(texture_value(textures, use, {0, 0.2, 0.2}), Rgbd(1.0));
 }
 
+TextureImage one_texel(const Rgb& value) {
+  return {.name = "", .width = 1, .height = 1, .srgb8 = {}, .linear = {value.x, value.y, value.z}};
+}
+
+TEST(Texture, DataBytesAreNoColours) {
+  TextureImage image{.name = "", .width = 1, .height = 1, .srgb8 = {51, 102, 255}, .linear = {}};
+  TextureUse use;
+  use.data = true;
+  EXPECT_EQ(texture_value(image, use, 0.5, 0.5), Rgbd(51.0, 102.0, 255.0) / 255.0);
+}
+
+TEST(Texture, RoughnessIsGreenAndMetallicBlue) {
+  SurfaceTextures textures = one_triangle(one_texel({0.1F, 0.5F, 0.25F}));
+  textures.materials.resize(1);
+  MaterialTextures& used = textures.materials[0];
+  used.roughness.image = used.base.image = 0;
+  used.metal = {.base = Rgb(1.0F), .metallic = 1.0F, .roughness = 0.5, .f0 = Rgb(0.04F), .edge = 1.0F, .transmission = 0.0F};
+  Material material, painted;
+  material.model = SurfaceModel::kMicrofacet;
+  paint(textures, material, 0, {0, 0.1, 0.1}, painted);
+  EXPECT_EQ(painted.facets.roughness, 0.25);
+  EXPECT_FLOAT_EQ(painted.diffuse.y, 0.75F * 0.5F);
+  EXPECT_FLOAT_EQ(painted.specular.y, 0.25F * 0.5F + 0.75F * 0.04F);
+  EXPECT_EQ(painted.facets.edge, 1.0F);
+}
+
+// The triangle lies in z = 0 with u along +x and v, which points down in the picture, along +y.
+TEST(Texture, NormalsAreBentInTheFrameOfThePicture) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const Vec3f up(0, 0, 1);
+  const auto bent = [&](const Rgb& value, double scale, const Vec3d& u_row) {
+    SurfaceTextures textures = one_triangle(one_texel(value));
+    textures.materials.resize(1);
+    textures.materials[0].normal.image = 0;
+    textures.materials[0].normal.u_row = u_row;
+    textures.materials[0].normal_scale = scale;
+    return mapped_normal(textures, mesh, 0, {0, 0.2, 0.3}, up).value_or(Vec3f(0.0F));
+  };
+  const Vec3d plain(1, 0, 0), mirrored(-1, 0, 1);
+  const auto near = [](const Vec3f& a, const Vec3d& b) { return length(Vec3d(a) - normalize(b)) < 1e-6; };
+  EXPECT_TRUE(near(bent({0.5F, 0.5F, 1}, 1.0, plain), {0, 0, 1}));
+  EXPECT_TRUE(near(bent({0.75F, 0.5F, 1}, 1.0, plain), {0.5, 0, 1}));
+  EXPECT_TRUE(near(bent({0.75F, 0.5F, 1}, 2.0, plain), {1, 0, 1}));
+  EXPECT_TRUE(near(bent({0.5F, 0.75F, 1}, 1.0, plain), {0, -0.5, 1}));
+  EXPECT_TRUE(near(bent({0.75F, 0.5F, 1}, 1.0, mirrored), {-0.5, 0, 1}));
+  EXPECT_TRUE(near(bent({0.5F, 0.75F, 1}, 1.0, mirrored), {0, -0.5, 1}));
+  // Coordinates without an extent have no frame.
+  EXPECT_EQ(bent({0.75F, 0.5F, 1}, 1.0, {0, 0, 0}), Vec3f(0.0F));
+}
+
 TEST(Texture, PaintMultipliesColourAndEmission) {
   TextureImage image{.name = "", .width = 1, .height = 1, .srgb8 = {}, .linear = {0.5F, 0.25F, 1.0F}};
   SurfaceTextures textures = one_triangle(image);

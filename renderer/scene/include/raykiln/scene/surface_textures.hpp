@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "raykiln/math/vec.hpp"
+#include "raykiln/scene/metallic_roughness.hpp"
 
 namespace raykiln::render {
 
@@ -32,6 +32,7 @@ struct TextureUse {
   std::uint8_t uv_set = 0;
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
   TextureFilter filter = TextureFilter::kBilinear;
+  bool data = false;  ///< numbers, not colours: bytes are not sRGB
   Vec3d u_row{1.0, 0.0, 0.0}, v_row{0.0, 1.0, 0.0};
 
   [[nodiscard]] bool used() const { return image != kNoTexture; }
@@ -42,8 +43,18 @@ struct MaterialTextures {
   TextureUse base;         ///< multiplies diffuse, what goes through facets, and the tinted share of specular
   Rgb specular_tint{0.0F}; ///< that share, [0, 1] for each channel
   TextureUse emission;     ///< multiplies emission
+  TextureUse roughness;    ///< of facets: green multiplies roughness, blue metallic
+  MetallicRoughness metal; ///< what those are multiplied with
+  TextureUse normal;       ///< half of 1 + the normal in the frame of the picture, y upwards in it
+  double normal_scale = 1.0;  ///< of its x and y
 
-  [[nodiscard]] bool used() const { return base.used() || emission.used(); }
+  [[nodiscard]] std::array<TextureUse*, 4> uses() { return {&base, &emission, &roughness, &normal}; }
+  [[nodiscard]] std::array<const TextureUse*, 4> uses() const {
+    return {&base, &emission, &roughness, &normal};
+  }
+  [[nodiscard]] bool used() const {
+    return base.used() || emission.used() || roughness.used() || normal.used();
+  }
 };
 
 struct UvSet {

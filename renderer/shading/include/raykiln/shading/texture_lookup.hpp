@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/scene/surface_textures.hpp"
@@ -30,6 +31,11 @@ void paint(const SurfaceTextures& textures, const Material& material, std::uint3
 /// Factor of a material's emission at this place; 1 without a texture.
 [[nodiscard]] Rgbd emission_factor(const SurfaceTextures& textures, std::uint32_t material,
                                    const TrianglePlace& at);
+
+/// The shading normal `ns` as the material's normal texture bends it; nothing where it does not.
+[[nodiscard]] std::optional<Vec3f> mapped_normal(const SurfaceTextures& textures,
+                                                 const TriangleMesh& mesh, std::uint32_t material,
+                                                 const TrianglePlace& at, const Vec3f& ns);
 
 /// Mean over all texels of the largest channel.
 [[nodiscard]] double mean_largest_channel(const TextureImage& image);
