@@ -142,7 +142,9 @@ std::optional<Vec3f> mapped_normal(const SurfaceTextures& textures, const Triang
     du[k] = dot(used.normal.u_row, step);
     dv[k] = dot(used.normal.v_row, step);
   }
-  const double turned = du[0] * dv[1] - du[1] * dv[0] < 0.0 ? -1.0 : 1.0;
+  const double area = du[0] * dv[1] - du[1] * dv[0];
+  if (!(std::abs(area) > 0.0)) return std::nullopt;
+  const double turned = area < 0.0 ? -1.0 : 1.0;
   const Vec3d n(ns), along = turned * (dv[1] * edge[0] - dv[0] * edge[1]);
   const Vec3d down = turned * (du[0] * edge[1] - du[1] * edge[0]);
   const Vec3d x = along - dot(along, n) * n;

@@ -86,13 +86,13 @@ TEST(ChiSquare, SamplesFollowTheDensity) {
   }
 }
 
-// 4 materials, 4 roughnesses, 5 directions of view, in both senses.
+// 4 materials, 2 roughnesses, 4 directions of view, from either side.
 TEST(ChiSquare, FacetsFollowTheirDensity) {
-  constexpr double kTests = 80.0;
+  constexpr double kTests = 32.0;
   int tests = 0;
   for (const auto& [name, material] : support::facet_materials()) {
-    for (const double roughness : {0.45, 0.6, 0.8, 1.0}) {
-      for (const double degrees : {0.0, 45.0, 80.0, 130.0, 170.0}) {
+    for (const double roughness : {0.5, 1.0}) {
+      for (const double degrees : {0.0, 60.0, 85.0, 130.0}) {
         const MicrofacetBsdf bsdf = support::facets_at(material, roughness, at_degrees(degrees));
         EXPECT_GT(support::chi_square_p(seen_counts(bsdf), expected_counts(bsdf, 1.0)),
                   support::sidak_level(kTests))

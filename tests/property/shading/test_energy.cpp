@@ -173,15 +173,16 @@ TEST(Energy, RefractionConservesItOnlyIfRadianceIsScaled) {
   EXPECT_GT(flux_through(1.5F, 180.0, 1e6, support::kSeedBsdf).value(), 2.0);
 }
 
-/// Albedo of facets, by an additive recurrence in four dimensions: its error is far below 1e-3.
+/// Albedo of facets, by an additive recurrence in four dimensions; with more points next to grazing, where light
+/// that met several facets leaves over many powers of ten of cosine^2.
 double facet_albedo_at(const Material& material, double roughness, double degrees) {
   BsdfModel unscaled;  // scaled, the inside of glass in a furnace of 1 is n^2 bright
   unscaled.light.radiance_scaling = false;
   const MicrofacetBsdf bsdf = support::facets_at(material, roughness, at_degrees(degrees), unscaled);
-  constexpr int kPoints = 16384;
+  const int points = degrees > 89.5 && degrees < 90.5 ? 32768 : 8192;
   constexpr double kRoot = 1.1673039782614187;  // of x^5 = x + 1
   double sum = 0.0, at[4] = {0.5, 0.5, 0.5, 0.5};
-  for (int i = 0; i < kPoints; ++i) {
+  for (int i = 0; i < points; ++i) {
     double step = 1.0;
     for (double& x : at) {
       step /= kRoot;
@@ -190,7 +191,7 @@ double facet_albedo_at(const Material& material, double roughness, double degree
     }
     sum += sample_bsdf(bsdf, {.lobe = at[0], .side = at[1], .u = at[2], .v = at[3]}).weight.x;
   }
-  return sum / kPoints;
+  return sum / points;
 }
 
 // What absorbs nothing is invisible in a furnace: a metal, a white base below a clear layer, a sheet, a body seen
@@ -209,7 +210,7 @@ TEST(Energy, FacetsInAFurnaceAreInvisible) {
   mixed.transparent = 0.4F;
   mixed.facets.coverage = 0.7F;
   body.facets.thin = false;
-  for (const double roughness : {0.0, 1e-4, 0.01, 0.1, 0.3, 0.5, 0.7, 1.0}) {
+  for (const double roughness : {0.0, 0.01, 0.15, 0.4, 0.7, 1.0}) {
     for (const double degrees : {0.0, 45.0, 75.0, 85.0, 89.0, 90.0 - 1e-6}) {
       for (const Material* m : {&metal, &plastic, &sheet, &mixed, &body}) {
         EXPECT_NEAR(facet_albedo_at(*m, roughness, degrees), 1.0, 0.01)

@@ -384,8 +384,8 @@ TEST(Gltf, WhatIsNotShownIsListed) {
   builder.root["extensionsRequired"] = {"KHR_texture_basisu"};
   builder.root["materials"] = Json::array();
   builder.root["materials"].push_back(
-      {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}},
-       {"normalTexture", {{"index", 0}}}});
+      {{"extensions", {{"KHR_materials_transmission", {{"transmissionTexture", {{"index", 0}}}}}}},
+       {"occlusionTexture", {{"index", 0}}}});
   builder.root["meshes"][0]["primitives"][0]["targets"] = Json::array();
   const auto imported = scene_of(builder);
   EXPECT_EQ(count_of(imported, Warn::kIgnoredExtension), 2U);
