@@ -15,6 +15,7 @@ namespace {
 template <class V>
 struct FilterRay {
   typename V::F ox, oy, oz, sx, sy;
+  typename V::F inv_dz, t_min, t_max;  ///< hits beyond t_max are of no use; it may be infinite
   std::size_t x, y, z;  ///< place of the axis within a corner of a block, in floats
 };
 
@@ -29,31 +30,73 @@ inline typename V::F edge_function(typename V::F ax, typename V::F ay, typename 
   return V::sub(V::mul(ax, by), V::mul(ay, bx));
 }
 
+/// Edge functions and z of the corners in float, and m (h + ...) of their error bound.
+template <class V>
+struct FilterValues {
+  typename V::F u, v, w, mh;
+  typename V::F z[3];
+};
+
+/// A bit for each triangle whose hit, if it is one, lies outside of the ray's interval for certain.
+///
+/// With e the error of an edge function, t_i = z_i / dz and R = max |t_i|, T = u t0 + v t1 + w t2 is
+/// off by 3 e R for the edge functions and by 7 u (|u| + |v| + |w|) R <= 42 u h^2 R <= 1.05 e R for its
+/// roundings; D = u + v + w by less than 4 e. So the sign of D is certain beyond 4 e, and then the
+/// exact t is below t_min when T - t_min D < -6 e (R + |t_min|) for positive D; the roundings of the
+/// product and of t itself are within that. The bound is formed so that it overflows where T or D
+/// does; what underflows (products, and t to zero) is covered by terms of their own.
+template <class V>
+inline std::uint32_t outside_interval(const FilterRay<V>& ray, const FilterValues<V>& f,
+                                      typename V::F e) {
+  using F = typename V::F;
+  const F sum = V::add(V::add(f.u, f.v), f.w);
+  const F size = V::abs(sum);
+  const F t[3] = {V::mul(f.z[0], ray.inv_dz), V::mul(f.z[1], ray.inv_dz),
+                  V::mul(f.z[2], ray.inv_dz)};
+  const F weighted = V::add(V::add(V::mul(f.u, t[0]), V::mul(f.v, t[1])), V::mul(f.w, t[2]));
+  const F depth = V::turn_sign(weighted, sum);
+  const F reach = largest_of<V>(t[0], t[1], t[2]);
+  const F mh8 = V::mul(f.mh, V::set1(8.0F));
+  const F vanished =
+      V::add(V::mul(size, V::set1(kVanishingT)), V::set1(kVanishingProduct));
+  const auto error = [&](F bound) {
+    const F g = V::add(reach, V::abs(bound));
+    const F certain = V::mul(V::mul(mh8, g), V::set1(0.75F * kFilterEdge));
+    return V::add(V::add(certain, V::mul(g, V::set1(kVanishingProduct))), vanished);
+  };
+  const auto before = V::lt(depth, V::sub(V::mul(ray.t_min, size), error(ray.t_min)));
+  const auto beyond = V::lt(V::add(V::mul(ray.t_max, size), error(ray.t_max)), depth);
+  const auto sure = V::lt(V::mul(e, V::set1(4.0F)), size);
+  return V::bits(V::both(sure, V::either(before, beyond)));
+}
+
 /// A bit for each of V::kWidth triangles of a block of kLeafWidth that may be hit; `block` points to
 /// the first of them.
 template <class V, int kLeafWidth>
 inline std::uint32_t may_be_hit(const FilterRay<V>& ray, const float* block) {
   using F = typename V::F;
   constexpr std::size_t kCorner = 3 * kLeafWidth;
-  F x[3], y[3], z[3];
+  FilterValues<V> f;
+  F x[3], y[3];
   for (std::size_t c = 0; c < 3; ++c) {
     const float* corner = block + c * kCorner;
-    z[c] = V::sub(V::load(corner + ray.z), ray.oz);
-    x[c] = V::sub(V::sub(V::load(corner + ray.x), ray.ox), V::mul(ray.sx, z[c]));
-    y[c] = V::sub(V::sub(V::load(corner + ray.y), ray.oy), V::mul(ray.sy, z[c]));
+    f.z[c] = V::sub(V::load(corner + ray.z), ray.oz);
+    x[c] = V::sub(V::sub(V::load(corner + ray.x), ray.ox), V::mul(ray.sx, f.z[c]));
+    y[c] = V::sub(V::sub(V::load(corner + ray.y), ray.oy), V::mul(ray.sy, f.z[c]));
   }
-  const F u = edge_function<V>(x[2], y[2], x[1], y[1]);
-  const F v = edge_function<V>(x[0], y[0], x[2], y[2]);
-  const F w = edge_function<V>(x[1], y[1], x[0], y[0]);
+  f.u = edge_function<V>(x[2], y[2], x[1], y[1]);
+  f.v = edge_function<V>(x[0], y[0], x[2], y[2]);
+  f.w = edge_function<V>(x[1], y[1], x[0], y[0]);
   const F h = V::max(largest_of<V>(x[0], x[1], x[2]), largest_of<V>(y[0], y[1], y[2]));
-  const F m = V::add(h, largest_of<V>(z[0], z[1], z[2]));
+  const F m = V::add(h, largest_of<V>(f.z[0], f.z[1], f.z[2]));
   // m (h + ...) first: where a product of corners overflows, so does this, and the lane passes.
-  const F mh = V::mul(m, V::add(h, V::mul(V::set1(kFilterCorner), m)));
-  const F e = V::add(V::mul(mh, V::set1(kFilterEdge)), V::set1(kFilterUnderflow));
-  const F least = V::min(V::min(u, v), w);
-  const F most = V::max(V::max(u, v), w);
+  f.mh = V::mul(m, V::add(h, V::mul(V::set1(kFilterCorner), m)));
+  const F e = V::add(V::mul(f.mh, V::set1(kFilterEdge)), V::set1(kFilterUnderflow));
+  const F least = V::min(V::min(f.u, f.v), f.w);
+  const F most = V::max(V::max(f.u, f.v), f.w);
   const auto missed = V::both(V::lt(least, V::turn_sign(e, V::set1(-1.0F))), V::lt(e, most));
-  return ~V::bits(missed) & ((1U << V::kWidth) - 1U);
+  const std::uint32_t lanes = ~V::bits(missed) & ((1U << V::kWidth) - 1U);
+  return lanes == 0 ? 0 : lanes & ~outside_interval<V>(ray, f, e);
 }
 
 /// A bit for each of V::kWidth ids that is neither padding nor `known`.

@@ -19,6 +19,7 @@ struct alignas(64) ReadyRays {
   static constexpr std::size_t kW = V::kWidth;
   float o[3][kW], inv_d[3][kW];
   float slack[kW], t0[kW], t1[kW];
+  float t_min[kW], t_max[kW];
   float sx[kW], sy[kW];   ///< slopes along the main axis
   std::uint32_t main_axis[kW];
 };
@@ -102,6 +103,8 @@ class RaySource {
     const F slack = V::mul(V::set1(kAbsoluteSlack), largest);
     F t0 = V::load(raw_[3]);
     F t1 = V::load(raw_[7]);
+    V::store(ready_.t_min, t0);
+    V::store(ready_.t_max, t1);
     for (std::size_t k = 0; k < 3; ++k) {
       const F o = V::load(raw_[k]);
       const F inv = V::load(ready_.inv_d[k]);

@@ -36,7 +36,7 @@ struct alignas(64) LaneGroup {
   float o[3][kW], inv_d[3][kW], slack[kW];
   float limit[kW];          ///< cells entered beyond need no visit
   std::uint32_t known[kW];  ///< a triangle that need not be decided again
-  float sx[kW], sy[kW];
+  float sx[kW], sy[kW], t_min[kW], t_max[kW];
   std::uint32_t main_axis[kW];
   std::uint32_t leaf_count[kW], leaf_place[kW];  ///< blocks of the leaf that waits for its visit
   std::size_t ray[kW];
@@ -114,6 +114,8 @@ class LaneWalk {
     group.t1[lane] = ready.t1[place];
     group.sx[lane] = ready.sx[place];
     group.sy[lane] = ready.sy[place];
+    group.t_min[lane] = ready.t_min[place];
+    group.t_max[lane] = ready.t_max[place];
     group.main_axis[lane] = ready.main_axis[place];
     group.limit[lane] = kEndless;
     group.known[lane] = kLaneNoHit;
@@ -248,6 +250,7 @@ class LaneWalk {
         query_.decide(query_.context, group.ray[lane], group.leaf_place[lane] + b, found);
     if (kAnyHit) return best.id != kLaneNoHit;
     group.limit[lane] = best.t;
+    if (best.t < group.t_max[lane]) group.t_max[lane] = best.t;
     group.known[lane] = best.id;
     return false;
   }
@@ -258,8 +261,9 @@ class LaneWalk {
     const std::size_t x = z == 2 ? 0 : z + 1;
     const std::size_t y = x == 2 ? 0 : x + 1;
     return {L::set1(group.o[x][lane]), L::set1(group.o[y][lane]), L::set1(group.o[z][lane]),
-            L::set1(group.sx[lane]),   L::set1(group.sy[lane]),   x * kLeafWidth,
-            y * kLeafWidth,            z * kLeafWidth};
+            L::set1(group.sx[lane]),   L::set1(group.sy[lane]),   L::set1(group.inv_d[z][lane]),
+            L::set1(group.t_min[lane]), L::set1(group.t_max[lane]),
+            x * kLeafWidth,            y * kLeafWidth,            z * kLeafWidth};
   }
 
   // Those of a block, or of the part of it that begins at `block`, that have to be decided.

@@ -18,4 +18,10 @@ constexpr float kFilterEdge = 40.0F * 0x1p-24F;
 constexpr float kFilterCorner = 4.0F * 0x1p-24F;
 constexpr float kFilterUnderflow = 0x1p-120F;
 
+/// What the test of the interval in lane_filter.hpp allows for underflow: of products of edge
+/// functions with depths or bounds, and of t to zero. 2^-116 and 2^-149 would do; but a product that
+/// is subnormal itself costs the processor more than the whole test.
+constexpr float kVanishingProduct = 0x1p-90F;
+constexpr float kVanishingT = 0x1p-60F;
+
 }  // namespace raykiln::render

@@ -123,9 +123,12 @@ inline test::TestMesh city(std::size_t n, std::uint64_t seed) {
   return mesh;
 }
 
-/// A bare room with twelve finely tessellated balls: small triangles beside large ones.
+/// Floor and two walls, open to the camera, with twelve finely tessellated balls: small triangles
+/// beside large ones.
 inline test::TestMesh room(std::size_t n, std::uint64_t seed) {
-  test::TestMesh mesh = test::box_room(4, 1.0F);
+  test::TestMesh mesh = test::coplanar_grid(4, 0, -1.0F);
+  mesh.append(test::coplanar_grid(4, 1, 1.0F));
+  mesh.append(test::coplanar_grid(4, 2, -1.0F));
   test::TestRandom random(seed);
   const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(n) / 24)));
   for (int ball = 0; ball < 12; ++ball) {

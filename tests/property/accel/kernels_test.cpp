@@ -89,10 +89,15 @@ TEST(Kernels, EveryScale) {
       for (Vec3f& p : scaled.positions) p *= scale;
       const auto tree = build(scaled);
       std::vector<Ray> scaled_rays = rays;
-      for (Ray& ray : scaled_rays) {
+      for (std::size_t i = 0; i < scaled_rays.size(); ++i) {  // t grows, or the direction
+        Ray& ray = scaled_rays[i];
         ray.o *= scale;
-        ray.t_min *= scale;
-        ray.t_max *= scale;
+        if (i % 24 < 12) {
+          ray.d *= scale;
+        } else {
+          ray.t_min *= scale;
+          ray.t_max *= scale;
+        }
       }
       SCOPED_TRACE(exponent);
       expect_same(*tree, scaled_rays);
@@ -100,6 +105,17 @@ TEST(Kernels, EveryScale) {
       for (const Traversal walk : walks()) {
         EXPECT_EQ(count_differences(scaled_rays, closest(*tree, scaled_rays, walk), expected), 0U);
       }
+      for (std::size_t i = 0; i < scaled_rays.size(); ++i) {  // intervals that end at the hit
+        if (expected[i].id == render::kNoHit) continue;
+        Ray& ray = scaled_rays[i];
+        switch (i % 4) {
+          case 0: ray.t_max = expected[i].t; break;
+          case 1: ray.t_max = render::next_down(expected[i].t); break;
+          case 2: ray.t_min = expected[i].t; break;
+          default: ray.t_min = render::next_up(expected[i].t); break;
+        }
+      }
+      expect_same(*tree, scaled_rays);
     }
   }
 }
