@@ -236,6 +236,8 @@ void add_commands(CLI::App& app, CliOptions& options) {
   add_picture_options(*render, options);
   add_output(*render, options, true);
   render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
+  render->add_flag("--adaptive", options.adaptive,
+                   "samples go where the error is: needs --error or --seconds; marked in every output");
 
   auto* effects = app.add_subcommand("effects", "list what a scene calls for, what is simulated, and why");
   add_picture_options(*effects, options);
@@ -321,6 +323,11 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
   if (used->get_option_no_throw("--samples") != nullptr) complete_stops(*used, options.picture.request);
   if (options.command == "extend" && used->count("--samples") + used->count("--seconds") + used->count("--error") == 0) {
     std::cerr << "raykiln: extend needs --samples, --seconds or --error\n";
+    parsed.exit_code = to_int(ExitCode::kUsage);
+  }
+  const StopRule& stop = options.picture.request.stop;
+  if (options.adaptive && !stop.error && !stop.seconds) {
+    std::cerr << "raykiln: --adaptive needs --error or --seconds to stop at\n";
     parsed.exit_code = to_int(ExitCode::kUsage);
   }
   if (options.command == "accuracy" && used->count("--size") == 0) {

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "load_here.hpp"
+#include "raykiln/accuracy/allocation.hpp"
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/render/render.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
@@ -58,17 +59,20 @@ std::vector<std::uint32_t> block_sizes(const std::vector<render::SampleBlock>& b
 class LocalJob {
  public:
   LocalJob(std::shared_ptr<const render::PreparedScene> scene, render::RenderSettings settings,
-           const JobRequest& request, LocalPool& pool)
+           const JobRequest& request, LocalPool& pool, bool adaptive)
       : scene_(std::move(scene)),
         settings_(settings),
         request_(request),
         pool_(pool),
+        adaptive_(adaptive),
         blocks_(render::blocks_for(request.stop.samples)),
-        plan_(request.width, request.height, request.tile, block_sizes(blocks_), TaskLength{}),
+        plan_(request.width, request.height, adaptive ? render::kCellSide : request.tile, block_sizes(blocks_),
+              TaskLength{}),
         film_(render::make_film(settings_)) {
     const StopRule& stop = request.stop;
     if (!stop.tile_samples.empty()) plan_.set_tile_samples(stop.tile_samples);
-    if (stop.error) plan_.set_limit(plan_.blocks_for(kErrorFloor));
+    if (stop.error && !adaptive_) plan_.set_limit(plan_.blocks_for(kErrorFloor));
+    if (adaptive_) plan_.set_tile_limits(std::vector<std::uint64_t>(static_cast<std::size_t>(plan_.tiles()), kErrorFloor));
   }
 
   /// The first fault of a worker, or success.
@@ -91,7 +95,7 @@ class LocalJob {
     }
     statistics_.render_seconds = seconds();
     if (fault) return *fault;
-    accuracy_ = judge_picture(film_, request_.pixel_mode == PixelMode::kRandom);
+    judge();
     progress(state());
     return success();
   }
@@ -104,7 +108,7 @@ class LocalJob {
     job.accuracy = accuracy_;
     auto samples = plan_.tile_samples();
     const bool even = std::all_of(samples.begin(), samples.end(), [&](auto n) { return n == samples[0]; });
-    if (done_by_ == DoneBy::kSeconds && !even) job.tile_samples = std::move(samples);
+    if ((adaptive_ || done_by_ == DoneBy::kSeconds) && !even) job.tile_samples = std::move(samples);
   }
   [[nodiscard]] RenderProgress progress() const {
     RenderProgress p;
@@ -124,12 +128,28 @@ class LocalJob {
     if (plan_.done()) done_by_ = DoneBy::kSamples;
     else if (plan_.closed()) done_by_ = DoneBy::kSeconds;
     else {
-      accuracy_ = judge_picture(film_, request_.pixel_mode == PixelMode::kRandom);
+      judge();
       if (target_met(request_.stop, *accuracy_)) done_by_ = DoneBy::kError;
     }
     if (done_by_ != DoneBy::kNone) return false;
+    if (adaptive_) return place_samples();
     const render::SampleBlock& last = blocks_[plan_.limit() - 1];
     plan_.set_limit(plan_.blocks_for(next_decision(last.first + last.count)));
+    return true;
+  }
+
+  void judge() {
+    accuracy_ = judge_picture(film_, request_.pixel_mode == PixelMode::kRandom);
+    if (adaptive_) accuracy_->notices.emplace_back("adaptive");
+  }
+
+  /// A tenth more samples than the picture has, where they help most; more if that moves no cell.
+  bool place_samples() {
+    auto mean = static_cast<std::uint64_t>(progress().samples_per_pixel);
+    while (!plan_.has_work()) {
+      mean = next_decision(mean);
+      plan_.set_tile_limits(render::allocate_samples(film_, static_cast<double>(mean), request_.stop.samples));
+    }
     return true;
   }
 
@@ -188,6 +208,7 @@ class LocalJob {
   render::RenderSettings settings_;
   const JobRequest& request_;
   LocalPool& pool_;
+  bool adaptive_;
   std::vector<render::SampleBlock> blocks_;
   TilePlan plan_;
   render::Film film_;
@@ -212,7 +233,7 @@ std::vector<JobWarning> warnings_of(const SceneReport& report) {
 
 Result<LocalPicture> render_locally(const ScenePackage& package, const JobRequest& request,
                                     LocalPool& pool,
-                                    const std::function<void(const ProgressState&)>& progress) {
+                                    const std::function<void(const ProgressState&)>& progress, bool adaptive) {
   const auto begun = Steady::now();
   const auto since = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
   progress({.stage = "importing"});
@@ -231,7 +252,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   const double build_seconds = since() - build_begun;
   const render::BuildStats tree_stats = render::build_stats(*tree);
   const auto prepared = render::prepare(loaded->scene, std::move(tree));
-  LocalJob job(prepared, *settings, request, pool);
+  LocalJob job(prepared, *settings, request, pool, adaptive);
   const double prepare_seconds = since();
   if (auto status = job.run(progress); !status) return status.error();
 
@@ -241,6 +262,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   for (const double e : errors) picture.error.push_back(static_cast<float>(e));
   for (const double n : job.film().plane("samples")) picture.samples.push_back(static_cast<float>(n));
   picture.job.request = request;
+  if (adaptive) picture.job.request.tile = render::kCellSide;  // what tile_samples count
   picture.job.state = JobState::kCompleted;
   picture.job.progress = job.progress();
   picture.job.statistics = job.statistics();

@@ -50,7 +50,9 @@ TilePlan::TilePlan(int width, int height, int tile, const std::vector<std::uint3
   samples_target_ = TileRect{0, 0, width, height}.pixels() * samples_before_.back();
 }
 
-std::size_t TilePlan::end_of(const Tile& tile) const { return std::min(tile.end_block, limit_); }
+std::size_t TilePlan::end_of(const Tile& tile) const {
+  return std::min({tile.end_block, tile.limit, limit_});
+}
 
 std::size_t TilePlan::row_major(const Tile& tile) const {
   return static_cast<std::size_t>(tile.rect.y0 / tile_side_) * static_cast<std::size_t>(tiles_across_) +
@@ -64,6 +66,18 @@ std::size_t TilePlan::blocks_for(std::uint64_t samples) const {
 
 void TilePlan::set_limit(std::size_t end_block) {
   limit_ = std::min(end_block, blocks());
+  let_go_on();
+}
+
+void TilePlan::set_tile_limits(const std::vector<std::uint64_t>& samples) {
+  for (Tile& tile : tiles_) {
+    tile.limit = std::max({tile.next_block, tile.pass_end, blocks_within(samples.at(row_major(tile)))});
+  }
+  let_go_on();
+}
+
+/// Tiles that wait are ready when their limit is beyond what they have, and only then.
+void TilePlan::let_go_on() {
   if (closed_) return;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     const Tile& tile = tiles_[i];
@@ -101,7 +115,7 @@ void TilePlan::resume(const std::vector<std::uint64_t>& samples) {
     ++tiles_started_;
     samples_done_ += tile.rect.pixels() * samples_before_[begin];
     if (begin == tile.end_block) ++tiles_done_;
-    else if (begin < limit_) ready_.emplace(begin, i);
+    else if (begin < end_of(tile)) ready_.emplace(begin, i);
   }
 }
 
@@ -249,7 +263,7 @@ void TilePlan::end_band(const WorkItem::Part& part) {
   tile.next_block = tile.pass_end;
   if (tile.next_block == tile.end_block) {
     ++tiles_done_;
-  } else if (!closed_ && tile.next_block < limit_) {
+  } else if (!closed_ && tile.next_block < end_of(tile)) {
     ready_.emplace(tile.next_block, part.tile);
   }
 }

@@ -229,5 +229,23 @@ TEST(TilePlanProperty, TilesCoverTheFilmOnceCentreFirst) {
   EXPECT_LE(std::abs(tiles.front().x0 + tiles.front().x1 - 130), 32);
 }
 
+// Each tile stops at its own limit, goes on when that is raised, and never beyond; a lower one takes nothing back.
+TEST(TilePlanProperty, TilesHaveLimitsOfTheirOwn) {
+  std::mt19937 random(7);
+  const std::vector<std::uint32_t> blocks(20, 16);
+  TilePlan plan(70, 40, 16, blocks, TaskLength{});
+  std::vector<std::uint64_t> limits(static_cast<std::size_t>(plan.tiles()), 0), reached = limits;
+  for (int round = 0; round < 20; ++round) {
+    for (std::uint64_t& limit : limits) limit = random() % 330;
+    plan.set_tile_limits(limits);
+    while (const auto item = plan.next()) ASSERT_TRUE(plan.merged(*item, 0.001));
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      reached[i] = std::max(reached[i], std::min<std::uint64_t>(320, limits[i] / 16 * 16));
+    }
+    ASSERT_EQ(plan.tile_samples(), reached) << round;
+    ASSERT_TRUE(plan.at_rest());
+  }
+}
+
 }  // namespace
 }  // namespace raykiln::server

@@ -75,6 +75,7 @@ struct CliOptions {
   ApproveOptions approve;
   AccuracyOptions accuracy;
   int threads = 0;
+  bool adaptive = false;  ///< of `render`
   bool wait = false;
   std::string job;
   std::string state;  ///< filter of `jobs`

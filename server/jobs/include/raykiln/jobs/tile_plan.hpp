@@ -55,6 +55,9 @@ class TilePlan {
   /// Blocks from this index on are not handed out until a later call raises the limit. Must not fall
   /// below what has been handed out.
   void set_limit(std::size_t end_block);
+  /// The same for each tile by itself: none goes beyond the last border of a block at or below its number of
+  /// samples (one a tile, row by row from the top left), nor back behind what it has.
+  void set_tile_limits(const std::vector<std::uint64_t>& samples);
   /// Each tile ends at the last border of a block at or below its number of samples (one a tile, row by
   /// row from the top left). Before the first next().
   void set_tile_samples(const std::vector<std::uint64_t>& samples);
@@ -110,6 +113,7 @@ class TilePlan {
     TileRect rect;
     std::size_t next_block = 0;  ///< first block that is not merged
     std::size_t end_block = 0;   ///< end of the tile's blocks
+    std::size_t limit = SIZE_MAX;  ///< see set_tile_limits()
     std::size_t pass_end = 0;    ///< end of the pass that is being handed out; next_block: none is
     int next_row = 0;            ///< first row of that pass not handed out
     int bands_in_flight = 0;
@@ -127,6 +131,7 @@ class TilePlan {
   [[nodiscard]] std::size_t pick_pass_end(const Tile& tile) const;
   [[nodiscard]] int pick_rows(const Tile& tile) const;
   [[nodiscard]] bool has_room(const WorkItem& item, std::uint64_t held_pixels, const Tile& tile) const;
+  void let_go_on();
   void open_pass(Tile& tile) const;
   void take_band(WorkItem& item);
   void end_band(const WorkItem::Part& part);
