@@ -2,22 +2,15 @@
 #include <algorithm>
 #include <charconv>
 
+#include "raykiln/base/error_record.hpp"
 #include "raykiln/base/record.hpp"
+#include "raykiln/base/wall_micros.hpp"
 #include "raykiln/jobs/job_snapshot.hpp"
+#include "raykiln/jobs/request_record.hpp"
 #include "accuracy_record.hpp"
-#include "request_record.hpp"
 
 namespace raykiln::server {
 namespace {
-
-using std::chrono::microseconds;
-
-std::int64_t micros(WallTime time) {
-  return std::chrono::duration_cast<microseconds>(time.time_since_epoch()).count();
-}
-WallTime from_micros(std::int64_t value) {
-  return WallTime(std::chrono::duration_cast<WallTime::duration>(microseconds(value)));
-}
 
 std::optional<WallTime> read_time(const RecordReader& record, std::string_view key) {
   if (!record.has(key)) return std::nullopt;
@@ -156,21 +149,6 @@ RenderProgress read_progress(const RecordReader& r) {
   return p;
 }
 
-void write_error(RecordWriter& r, const Error& error) {
-  r.integer("error.kind", static_cast<int>(error.kind));
-  r.text("error.code", error.code);
-  r.text("error.message", error.message);
-  r.text("error.where", error.where);
-}
-
-std::optional<Error> read_error(const RecordReader& r) {
-  if (!r.has("error.code")) return std::nullopt;
-  const auto kind = std::clamp<std::int64_t>(r.integer("error.kind"), 0,
-                                             static_cast<int>(ErrorKind::kInternal));
-  return Error{static_cast<ErrorKind>(kind), r.text("error.code"), r.text("error.message"),
-               r.text("error.where")};
-}
-
 }  // namespace
 
 void write_request(RecordWriter& r, const JobRequest& q) {
@@ -244,9 +222,9 @@ std::string encode_job(const JobSnapshot& job) {
   r.text("state", name(job.state));
   r.natural("revision", job.revision);
   r.natural("image_revision", job.image_revision);
-  r.integer("created", micros(job.created));
-  if (job.started) r.integer("started", micros(*job.started));
-  if (job.finished) r.integer("finished", micros(*job.finished));
+  r.integer("created", to_micros(job.created));
+  if (job.started) r.integer("started", to_micros(*job.started));
+  if (job.finished) r.integer("finished", to_micros(*job.finished));
   r.real("elapsed_seconds", job.elapsed_seconds);
   write_progress(r, job.progress);
   write_statistics(r, job.statistics);

@@ -6,7 +6,7 @@
 #include "raykiln/base/ids.hpp"
 #include "raykiln/base/record.hpp"
 #include "raykiln/base/sha256.hpp"
-#include "request_record.hpp"
+#include "raykiln/jobs/request_record.hpp"
 
 namespace raykiln::server {
 namespace {

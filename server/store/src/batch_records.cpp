@@ -1,19 +1,11 @@
 #include "raykiln/store/batch_records.hpp"
 
-#include <SQLiteCpp/SQLiteCpp.h>
-#include <sqlite3.h>
+#include "sqlite_guard.hpp"
 
 namespace raykiln::server {
 namespace {
 
 constexpr int kPatienceMs = 5000;  ///< with the store's own connection
-
-Error error_of(const SQLite::Exception& fault) {
-  if (fault.getErrorCode() == SQLITE_FULL) {
-    return {ErrorKind::kStorageFull, "storage_full", "the disk of the store is full", ""};
-  }
-  return {ErrorKind::kInternal, "internal", std::string("store: ") + fault.what(), ""};
-}
 
 class SqliteBatches final : public BatchRecords {
  public:
@@ -24,38 +16,39 @@ class SqliteBatches final : public BatchRecords {
         " id TEXT NOT NULL UNIQUE, request TEXT NOT NULL, state TEXT NOT NULL)");
   }
 
-  Status add(const BatchRecord& batch) override {
-    return run("INSERT INTO batches (id, request, state) VALUES (?, ?, ?)", {batch.id, batch.request, batch.state});
+  Status add(const BatchRecord& batch, const std::vector<std::string>& instead_of) override {
+    return guarded([&]() -> Status {
+      SQLite::Transaction whole(db_);
+      for (const std::string& id : instead_of) run("DELETE FROM batches WHERE id = ?", {id});
+      run("INSERT INTO batches (id, request, state) VALUES (?, ?, ?)", {batch.id, batch.request, batch.state});
+      whole.commit();
+      return success();
+    });
   }
   Status set_state(const std::string& id, const std::string& state) override {
-    return run("UPDATE batches SET state = ? WHERE id = ?", {state, id});
+    return guarded([&]() -> Status {
+      run("UPDATE batches SET state = ? WHERE id = ?", {state, id});
+      return success();
+    });
   }
-  Status remove(const std::string& id) override { return run("DELETE FROM batches WHERE id = ?", {id}); }
 
   Result<std::vector<BatchRecord>> all() override {
-    try {
+    return guarded([&]() -> Result<std::vector<BatchRecord>> {
       SQLite::Statement rows(db_, "SELECT id, request, state FROM batches ORDER BY sequence");
       std::vector<BatchRecord> batches;
       while (rows.executeStep()) {
         batches.push_back({rows.getColumn(0).getString(), rows.getColumn(1).getString(), rows.getColumn(2).getString()});
       }
       return batches;
-    } catch (const SQLite::Exception& fault) {
-      return error_of(fault);
-    }
+    });
   }
 
  private:
-  Status run(const char* sql, const std::vector<std::string>& values) {
-    try {
-      SQLite::Statement query(db_, sql);
-      int slot = 0;
-      for (const std::string& value : values) query.bind(++slot, value);
-      query.exec();
-      return success();
-    } catch (const SQLite::Exception& fault) {
-      return error_of(fault);
-    }
+  void run(const char* sql, const std::vector<std::string>& values) {
+    SQLite::Statement query(db_, sql);
+    int slot = 0;
+    for (const std::string& value : values) query.bind(++slot, value);
+    query.exec();
   }
 
   SQLite::Database db_;
@@ -64,12 +57,9 @@ class SqliteBatches final : public BatchRecords {
 }  // namespace
 
 Result<std::unique_ptr<BatchRecords>> BatchRecords::open(const StoreSettings& settings) {
-  try {
-    return std::unique_ptr<BatchRecords>(
-        std::make_unique<SqliteBatches>((settings.directory / "raykiln.db").string()));
-  } catch (const SQLite::Exception& fault) {
-    return error_of(fault);
-  }
+  return guarded([&]() -> Result<std::unique_ptr<BatchRecords>> {
+    return std::unique_ptr<BatchRecords>(std::make_unique<SqliteBatches>((settings.directory / "raykiln.db").string()));
+  });
 }
 
 }  // namespace raykiln::server

@@ -4,18 +4,11 @@
 #include <charconv>
 
 #include "raykiln/base/record.hpp"
+#include "raykiln/base/wall_micros.hpp"
 
 namespace raykiln::server {
 namespace {
 
-using std::chrono::microseconds;
-
-std::int64_t micros(WallTime time) {
-  return std::chrono::duration_cast<microseconds>(time.time_since_epoch()).count();
-}
-WallTime from_micros(std::int64_t value) {
-  return WallTime(std::chrono::duration_cast<WallTime::duration>(microseconds(value)));
-}
 std::int64_t bounded(std::uint64_t value) {
   return static_cast<std::int64_t>(std::min<std::uint64_t>(value, INT64_MAX));
 }
@@ -112,7 +105,7 @@ void insert_scene(SQLite::Database& db, const SceneRecord& scene) {
   query.bind(2, std::string(name(scene.kind)));
   query.bind(3, scene.name);
   query.bind(4, bounded(scene.bytes));
-  query.bind(5, micros(scene.created));
+  query.bind(5, to_micros(scene.created));
   query.bind(6, scene.report);
   query.bind(7, encode_files(scene.files));
   query.exec();
@@ -152,8 +145,8 @@ void upsert_job(SQLite::Database& db, const JobRecord& job) {
   query.bind(2, std::string(name(job.state)));
   query.bind(3, bounded(job.revision));
   query.bind(4, job.scene);
-  query.bind(5, micros(job.created));
-  query.bind(6, micros(job.updated));
+  query.bind(5, to_micros(job.created));
+  query.bind(6, to_micros(job.updated));
   if (job.idempotency_key.empty()) {
     query.bind(7);
   } else {

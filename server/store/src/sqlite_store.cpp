@@ -6,23 +6,11 @@
 #include "directory_store.hpp"
 #include "image_file.hpp"
 #include "raykiln/base/ids.hpp"
+#include "sqlite_guard.hpp"
 #include "sqlite_records.hpp"
 
 namespace raykiln::server {
 namespace {
-
-/// Runs `step` and turns what SQLiteCpp throws into a value.
-template <class Step>
-auto guarded(const Step& step) -> decltype(step()) {
-  try {
-    return step();
-  } catch (const SQLite::Exception& fault) {
-    if (fault.getErrorCode() == SQLITE_FULL) {
-      return Error{ErrorKind::kStorageFull, "storage_full", "the disk of the store is full", ""};
-    }
-    return Error{ErrorKind::kInternal, "internal", std::string("store: ") + fault.what(), ""};
-  }
-}
 
 Error scene_not_found(const std::string& id) {
   return {ErrorKind::kNotFound, "scene_not_found", "there is no such scene", id};

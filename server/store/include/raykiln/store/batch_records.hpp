@@ -24,9 +24,9 @@ class BatchRecords {
   [[nodiscard]] static Result<std::unique_ptr<BatchRecords>> open(const StoreSettings& settings);
   virtual ~BatchRecords() = default;
 
-  virtual Status add(const BatchRecord& batch) = 0;
+  /// Removes those and adds this one, or changes nothing.
+  virtual Status add(const BatchRecord& batch, const std::vector<std::string>& instead_of) = 0;
   virtual Status set_state(const std::string& id, const std::string& state) = 0;
-  virtual Status remove(const std::string& id) = 0;
   /// Oldest first.
   virtual Result<std::vector<BatchRecord>> all() = 0;
 };
