@@ -47,7 +47,7 @@ class ServerRig {
   void start() {
     scheduler = std::make_unique<server::Scheduler>(
         config, server::Scheduler::Parts{*store, executor ? *executor : *pool, intake, *cache,
-                                         clock, metrics, server::Log()});
+                                         clock, metrics, server::Log(), judged_at_once_px});
   }
 
   server::Result<server::AddedScene> add_scene(const std::string& bytes,
@@ -123,6 +123,7 @@ class ServerRig {
   std::unique_ptr<server::Store> store;
   std::unique_ptr<server::LocalPool> pool;
   server::Executor* executor = nullptr;
+  int judged_at_once_px = 65'536;
   std::unique_ptr<server::SceneCache> cache;
   std::unique_ptr<server::Scheduler> scheduler;
 };

@@ -24,11 +24,11 @@ struct Watched {
 }  // namespace
 
 struct EventHub::State {
-  explicit State(std::size_t max) : max_subscribers(max) {}
+  explicit State(std::size_t max) : max_clients(max) {}
   mutable std::mutex mutex;
   std::map<JobId, Watched> jobs;  ///< with at least one reader
-  std::size_t count = 0;
-  const std::size_t max_subscribers;
+  std::size_t clients = 0;
+  const std::size_t max_clients;
 };
 
 namespace {
@@ -36,14 +36,14 @@ namespace {
 template <class State>
 class HubSubscription final : public Subscription {
  public:
-  HubSubscription(std::shared_ptr<State> state, JobId job, std::shared_ptr<Reader> reader)
-      : state_(std::move(state)), job_(std::move(job)), reader_(std::move(reader)) {}
+  HubSubscription(std::shared_ptr<State> state, JobId job, std::shared_ptr<Reader> reader, Seat seat)
+      : state_(std::move(state)), job_(std::move(job)), reader_(std::move(reader)), seat_(seat) {}
 
   ~HubSubscription() override {
     std::function<void()> dropped;  // declared first: dies after the lock is released
     const std::scoped_lock lock(state_->mutex);
     dropped = std::move(reader_->wake);
-    --state_->count;
+    if (seat_ == Seat::kClient) --state_->clients;
     const auto found = state_->jobs.find(job_);
     if (found == state_->jobs.end()) return;
     found->second.readers.erase(reader_);
@@ -60,12 +60,12 @@ class HubSubscription final : public Subscription {
   std::shared_ptr<State> state_;
   JobId job_;
   std::shared_ptr<Reader> reader_;
+  const Seat seat_;
 };
 
 }  // namespace
 
-EventHub::EventHub(std::size_t max_subscribers)
-    : state_(std::make_shared<State>(max_subscribers)) {}
+EventHub::EventHub(std::size_t max_clients) : state_(std::make_shared<State>(max_clients)) {}
 EventHub::~EventHub() = default;
 
 void EventHub::publish(SnapshotPtr snapshot) {
@@ -88,9 +88,9 @@ void EventHub::publish(SnapshotPtr snapshot) {
 }
 
 Result<std::unique_ptr<Subscription>> EventHub::subscribe(SnapshotPtr current,
-                                                          std::function<void()> wake) {
+                                                          std::function<void()> wake, Seat seat) {
   const std::scoped_lock lock(state_->mutex);
-  if (state_->count >= state_->max_subscribers) {
+  if (seat == Seat::kClient && state_->clients >= state_->max_clients) {
     return Error{ErrorKind::kUnavailable, "too_many_streams", "too many event streams are open", "", 5};
   }
   auto reader = std::make_shared<Reader>();
@@ -103,14 +103,14 @@ Result<std::unique_ptr<Subscription>> EventHub::subscribe(SnapshotPtr current,
     reader->newest = watched.newest;
     watched.readers.insert(reader);
   }
-  ++state_->count;
+  if (seat == Seat::kClient) ++state_->clients;
   return std::unique_ptr<Subscription>(
-      std::make_unique<HubSubscription<State>>(state_, id, std::move(reader)));
+      std::make_unique<HubSubscription<State>>(state_, id, std::move(reader), seat));
 }
 
-std::size_t EventHub::subscribers() const {
+std::size_t EventHub::clients() const {
   const std::scoped_lock lock(state_->mutex);
-  return state_->count;
+  return state_->clients;
 }
 
 }  // namespace raykiln::server

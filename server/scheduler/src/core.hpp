@@ -46,6 +46,7 @@ struct LiveJob {
 
   // The error of the picture.
   bool measuring = false;   ///< a copy of the film is being judged
+  bool deciding = false;    ///< the film is being judged, and nothing of it is in flight
   double measure_at = 0.0;  ///< render seconds from which it is judged anew
   std::vector<float> pixel_seconds;  ///< of workers
 
@@ -73,7 +74,7 @@ class Scheduler::Core {
   void list(const ListJobs& query, const Reply<JobPage>& reply);
   void cancel(const JobId& id, const Reply<JobSnapshot>& reply);
   void watch(const JobId& id, std::function<void()> wake,
-             const Reply<std::unique_ptr<Subscription>>& reply);
+             const Reply<std::unique_ptr<Subscription>>& reply, Seat seat);
   void status(const Reply<SchedulerStatus>& reply);
 
   // core_images.cpp
@@ -130,6 +131,7 @@ class Scheduler::Core {
   void begin_stops(LiveJob& job);
   void time_is_up(const JobId& id);
   void rest(LiveJob& job);
+  void decided(LiveJob& job, PictureError error, double seconds, JobStatistics then);
   void finish(LiveJob& job, DoneBy by);
   void measure_if_due(LiveJob& job);
   void measured(const JobId& id, const PictureError& error, double cost, const JobStatistics& then);

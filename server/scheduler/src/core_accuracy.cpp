@@ -52,15 +52,46 @@ void Scheduler::Core::time_is_up(const JobId& id) {
 /// Nothing of the job is in flight and nothing can be handed out: every pixel of a tile is at the
 /// same border of a block. What is decided here depends on merged samples alone.
 void Scheduler::Core::rest(LiveJob& job) {
+  if (job.deciding) return;  // decided() comes back here
   if (job.plan->done()) return finish(job, DoneBy::kSamples);
   if (job.plan->closed()) return finish(job, DoneBy::kSeconds);
-  const SteadyTime begin = parts_.clock.steady();
   refresh(job);
-  note_error(job, judge_picture(*job.film, samples_area(job.snapshot)), job.snapshot.statistics);
-  job.snapshot.statistics.accuracy_seconds += seconds_between(begin, parts_.clock.steady());
-  if (target_met(job.snapshot.request.stop, *job.snapshot.accuracy)) {
-    return finish(job, DoneBy::kError);
+  const JobStatistics& then = job.snapshot.statistics;
+  if (job.settings.width * job.settings.height <= parts_.judged_at_once_px) {
+    const SteadyTime begin = parts_.clock.steady();
+    auto error = judge_picture(*job.film, samples_area(job.snapshot));
+    return decided(job, std::move(error), seconds_between(begin, parts_.clock.steady()), then);
   }
+  // Seconds for the largest films. Nobody writes into this one until decided() hands out more of it.
+  job.deciding = true;
+  disk_.post([this, id = job.snapshot.id, film = std::shared_ptr<const render::Film>(job.film),
+              area = samples_area(job.snapshot), then] {
+    const SteadyTime begin = parts_.clock.steady();
+    std::optional<PictureError> error;
+    try {
+      error = judge_picture(*film, area);
+    } catch (const std::exception& fault) {
+      parts_.log.error("error_not_judged", {{"job", id}, {"why", fault.what()}});
+    }
+    const double seconds = seconds_between(begin, parts_.clock.steady());
+    post([this, id, error, seconds, then] {
+      LiveJob* waiting = find(id);
+      if (waiting == nullptr || !waiting->deciding || halted_) return;
+      waiting->deciding = false;
+      if (waiting->ending) return;  // cancelled meanwhile
+      if (error) decided(*waiting, *error, seconds, then);
+      else begin_ending(*waiting, JobEvent::kFail, Error{ErrorKind::kInternal, "render_failed", "no memory to judge the picture", ""});
+      pump();
+    });
+  });
+}
+
+/// `then`: of the samples that were judged.
+void Scheduler::Core::decided(LiveJob& job, PictureError error, double seconds, JobStatistics then) {
+  note_error(job, std::move(error), then);
+  job.snapshot.statistics.accuracy_seconds += seconds;
+  if (target_met(job.snapshot.request.stop, *job.snapshot.accuracy)) return finish(job, DoneBy::kError);
+  if (job.plan->closed()) return rest(job);  // the time was up meanwhile
   job.plan->set_limit(decision_after(job));
   publish_soon(job);
 }

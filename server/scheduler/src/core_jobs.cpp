@@ -224,14 +224,14 @@ void Scheduler::Core::cancel(const JobId& id, const Reply<JobSnapshot>& reply) {
 }
 
 void Scheduler::Core::watch(const JobId& id, std::function<void()> wake,
-                            const Reply<std::unique_ptr<Subscription>>& reply) {
+                            const Reply<std::unique_ptr<Subscription>>& reply, Seat seat) {
   auto snapshot = snapshot_of(id);
   if (!snapshot) return reply(snapshot.error());
-  reply(hub_.subscribe(std::make_shared<const JobSnapshot>(std::move(*snapshot)), std::move(wake)));
+  reply(hub_.subscribe(std::make_shared<const JobSnapshot>(std::move(*snapshot)), std::move(wake), seat));
 }
 
 void Scheduler::Core::status(const Reply<SchedulerStatus>& reply) {
-  reply(SchedulerStatus{accepting_, queue_.size(), active_, hub_.subscribers()});
+  reply(SchedulerStatus{accepting_, queue_.size(), active_, hub_.clients()});
 }
 
 }  // namespace raykiln::server

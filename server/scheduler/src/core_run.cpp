@@ -13,9 +13,6 @@
 namespace raykiln::server {
 namespace {
 
-/// Pixels of which the error is judged in some hundredths of a second.
-constexpr int kJudgedAtOnce = 65536;
-
 TaskLength task_length(const SchedulerSettings& settings) {
   TaskLength length;
   length.low_seconds = settings.task_seconds_low;
@@ -303,7 +300,7 @@ void Scheduler::Core::archive_if_drained(LiveJob& job) {
   const JobImagePtr beauty = resolve(job, false);
   // Nothing is merged any more: the film is read, and its error judged, where it holds up nobody.
   // Who cancels does not wait: the error of a large picture is the one last judged.
-  const bool judged = *job.ending != JobEvent::kDrained || job.settings.width * job.settings.height <= kJudgedAtOnce;
+  const bool judged = *job.ending != JobEvent::kDrained || job.settings.width * job.settings.height <= parts_.judged_at_once_px;
   disk_.post([this, id, beauty, judged, film = std::shared_ptr<const render::Film>(job.film),
               seconds = std::move(job.pixel_seconds),
               samples_area = job.snapshot.request.pixel_mode == PixelMode::kRandom] {

@@ -7,21 +7,9 @@
 namespace raykiln::server {
 namespace {
 
-Error shutting_down() {
-  return {ErrorKind::kUnavailable, "shutting_down", "the server is stopping", "", 5};
-}
-
-/// Runs `step(reply)` on the strand; answers where there is no strand any more, or the step throws.
 template <class T, class Core, class Step>
 void ask(Core& core, const Reply<T>& reply, Step step) {
-  const bool posted = core.post([reply, step = std::move(step)]() mutable {
-    try {
-      step(reply);
-    } catch (const std::bad_alloc&) {
-      reply(Error{ErrorKind::kInternal, "internal", "out of memory", ""});
-    }
-  });
-  if (!posted) reply(shutting_down());
+  answer_by([&core](auto run) { return core.post(std::move(run)); }, reply, std::move(step));
 }
 
 }  // namespace
@@ -54,10 +42,10 @@ void Scheduler::cancel(JobId id, Reply<JobSnapshot> reply) {
       [core = core_.get(), id = std::move(id)](const auto& to) { core->cancel(id, to); });
 }
 void Scheduler::watch(JobId id, std::function<void()> wake,
-                      Reply<std::unique_ptr<Subscription>> reply) {
+                      Reply<std::unique_ptr<Subscription>> reply, Seat seat) {
   ask(*core_, reply,
-      [core = core_.get(), id = std::move(id), wake = std::move(wake)](const auto& to) mutable {
-        core->watch(id, std::move(wake), to);
+      [core = core_.get(), id = std::move(id), wake = std::move(wake), seat](const auto& to) mutable {
+        core->watch(id, std::move(wake), to, seat);
       });
 }
 void Scheduler::image(JobId id, std::string layer, Reply<JobImagePtr> reply) {

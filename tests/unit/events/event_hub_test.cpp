@@ -40,6 +40,17 @@ TEST(EventHub, TheFinalStateIsDeliveredLast) {
   EXPECT_EQ((*late)->take()->revision, 3U);
 }
 
+TEST(EventHub, WhatTheServerWatchesTakesNoClientsPlace) {
+  EventHub hub(1);
+  const auto own = hub.subscribe(at(1), [] {}, Seat::kServer), another = hub.subscribe(at(1), [] {}, Seat::kServer);
+  EXPECT_EQ(hub.clients(), 0U);
+  EXPECT_TRUE(own && another);
+  const auto client = hub.subscribe(at(1), [] {});
+  EXPECT_TRUE(client);
+  EXPECT_TRUE(hub.subscribe(at(1), [] {}, Seat::kServer));
+  EXPECT_EQ(hub.clients(), 1U);
+}
+
 TEST(EventHub, SubscribersAreBoundedAndLeave) {
   EventHub hub(1);
   int wakes = 0;
@@ -48,7 +59,7 @@ TEST(EventHub, SubscribersAreBoundedAndLeave) {
   ASSERT_FALSE(two);
   EXPECT_EQ(two.error().code, "too_many_streams");
   one->reset();
-  EXPECT_EQ(hub.subscribers(), 0U);
+  EXPECT_EQ(hub.clients(), 0U);
   hub.publish(at(2));
   EXPECT_EQ(wakes, 0);
   EXPECT_TRUE(hub.subscribe(at(2), [] {}));

@@ -16,9 +16,12 @@ struct Ended {
   std::vector<float> rgb;
 };
 
-Ended run(int threads, const std::function<void(JobRequest&)>& change) {
+Ended run(int threads, const std::function<void(JobRequest&)>& change, int judged_at_once_px = 65'536) {
   const TempDirectory directory;
   ServerRig rig(directory.path(), threads);
+  rig.scheduler.reset();
+  rig.judged_at_once_px = judged_at_once_px;
+  rig.start();
   JobRequest request = small_job(rig.add_scene("a room")->scene.record.id);
   change(request);
   const auto submitted = rig.submit(request);
@@ -53,6 +56,23 @@ TEST(Stops, ByErrorHoldTheTargetAndDoNotDependOnThreads) {
   });
   EXPECT_EQ(stated.job.done_by, DoneBy::kSamples);
   EXPECT_EQ(stated.rgb, one.rgb);
+}
+
+TEST(Stops, LargeFilmsAreJudgedElsewhereWithTheSameEnd) {
+  const auto by_error = [](JobRequest& r) {
+    r.stop = {.samples = 100'000, .error = 0.02};
+    r.width = r.height = 48;
+  };
+  const Ended here = run(2, by_error), elsewhere = run(2, by_error, 0);
+  EXPECT_EQ(elsewhere.job.done_by, DoneBy::kError);
+  EXPECT_EQ(elsewhere.job.accuracy->error.value, here.job.accuracy->error.value);
+  EXPECT_EQ(elsewhere.job.accuracy->least_samples, here.job.accuracy->least_samples);
+  EXPECT_EQ(elsewhere.rgb, here.rgb);
+  EXPECT_GT(elsewhere.job.statistics.accuracy_seconds, 0.0);
+  // The time ends while a decision is being made, or between two.
+  const Ended timed = run(2, [](JobRequest& r) { r.stop = {.samples = 1'000'000, .seconds = 0.3, .error = 0.0001}; }, 0);
+  EXPECT_EQ(timed.job.done_by, DoneBy::kSeconds);
+  EXPECT_FALSE(target_met(timed.job.request.stop, *timed.job.accuracy));
 }
 
 TEST(Stops, ByTimeEndAtBordersAndAreMadeAgainFromTheirSamples) {

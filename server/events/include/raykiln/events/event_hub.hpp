@@ -24,10 +24,14 @@ class Subscription {
   [[nodiscard]] virtual SnapshotPtr take() = 0;
 };
 
+/// Who subscribes: clients are bounded here; what the server itself watches is bounded by whoever watches, and
+/// takes no client's place.
+enum class Seat : bool { kClient, kServer };
+
 /// Safe to use from any thread; `wake` is never called under a lock.
 class EventHub {
  public:
-  explicit EventHub(std::size_t max_subscribers);
+  explicit EventHub(std::size_t max_clients);
   ~EventHub();
   EventHub(const EventHub&) = delete;
   EventHub& operator=(const EventHub&) = delete;
@@ -38,11 +42,12 @@ class EventHub {
   void publish(SnapshotPtr snapshot);
 
   /// Watches from `current` on. `wake` runs on the publisher's thread and must only post. "too_many_streams"
-  /// (kUnavailable) at the bound.
+  /// (kUnavailable) when there are as many clients as there may be.
   [[nodiscard]] Result<std::unique_ptr<Subscription>> subscribe(SnapshotPtr current,
-                                                                std::function<void()> wake);
+                                                                std::function<void()> wake,
+                                                                Seat seat = Seat::kClient);
 
-  [[nodiscard]] std::size_t subscribers() const;
+  [[nodiscard]] std::size_t clients() const;
 
  private:
   struct State;

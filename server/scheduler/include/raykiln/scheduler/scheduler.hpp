@@ -10,6 +10,7 @@
 #include "raykiln/base/config.hpp"
 #include "raykiln/base/log.hpp"
 #include "raykiln/base/metrics.hpp"
+#include "raykiln/base/reply.hpp"
 #include "raykiln/base/result.hpp"
 #include "raykiln/events/event_hub.hpp"
 #include "raykiln/scheduler/views.hpp"
@@ -20,13 +21,8 @@
 
 namespace raykiln::server {
 
-/// The answer to one call. Invoked exactly once, on a thread of the scheduler, never under a lock and
-/// never within the call itself: it must only post. After shutdown() the answer is "shutting_down", given
-/// within the call.
-template <class T>
-using Reply = std::function<void(Result<T>)>;
-
-/// Safe to use from any thread; no call blocks on anything but a short lock.
+/// Safe to use from any thread; no call blocks on anything but a short lock. Replies come on a thread of the
+/// scheduler, never within the call itself; after shutdown() the answer is "shutting_down", given within the call.
 ///
 /// Errors that calls answer with, besides those of store, intake and validation: job_not_found,
 /// scene_not_found, invalid_request (`where` a JSON pointer, "/camera" too), invalid_parameter (cursor,
@@ -45,6 +41,7 @@ class Scheduler {
     const Clock& clock;
     MetricsRegistry& metrics;
     Log log;
+    int judged_at_once_px = 65'536;  ///< the error of larger films is judged off the strand, also where work waits for it
   };
   /// Reads the store: unfinished jobs are queued again. All parts must outlive the scheduler.
   Scheduler(const Config& config, Parts parts);
@@ -63,7 +60,8 @@ class Scheduler {
   void cancel(JobId id, Reply<JobSnapshot> reply);
   /// See EventHub: `wake` must only post; take() of the subscription gives the newest snapshot, the
   /// first call the present one.
-  void watch(JobId id, std::function<void()> wake, Reply<std::unique_ptr<Subscription>> reply);
+  void watch(JobId id, std::function<void()> wake, Reply<std::unique_ptr<Subscription>> reply,
+             Seat seat = Seat::kClient);
   /// The newest picture, resolved once per revision. `layer`: "beauty" for the picture alone, "all" with its
   /// layers (which a picture stored by an older version lacks).
   void image(JobId id, std::string layer, Reply<JobImagePtr> reply);
