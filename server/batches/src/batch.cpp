@@ -69,11 +69,13 @@ std::optional<std::size_t> Batch::next_to_start() {
   return first_waiting_;
 }
 
-void Batch::skip_after_failure() {
-  if (!request_.fail_fast || count(ItemState::kFailed) == 0) return;
+std::size_t Batch::skip_after_failure() {
+  if (!request_.fail_fast || count(ItemState::kFailed) == 0) return 0;
+  const std::size_t waiting = count(ItemState::kWaiting);
   for (std::size_t i = first_waiting_; i < items().size(); ++i) {
     if (items()[i].state == ItemState::kWaiting) enter(i, ItemState::kSkipped);
   }
+  return waiting;
 }
 
 void Batch::cancel_waiting() {

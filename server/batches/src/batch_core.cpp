@@ -8,10 +8,19 @@
 namespace raykiln::server {
 namespace {
 
-/// Changes that come closer together are one revision: a store is not flushed for each of a thousand items.
-constexpr auto kFlushInterval = std::chrono::milliseconds(50);
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLongestStoreWait = std::chrono::minutes(1);
+
+/// Changes that come closer together are one revision: a store is not flushed, and a thousand items are not
+/// written out for all who watch, for each of them.
+milliseconds flush_interval(const Batch& batch) {
+  return milliseconds(50 + static_cast<std::int64_t>(batch.total()) / 5);
+}
 
 Error batch_not_found(const BatchId& id) { return {ErrorKind::kNotFound, "batch_not_found", "there is no such batch", id}; }
+
+Error too_many_running() { return {ErrorKind::kTooMany, "queue_full", "too many batches are running", "", 10}; }
 
 bool is_running(const Batch& batch) { return batch.state() == BatchState::kRunning; }
 
@@ -36,8 +45,15 @@ void BatchRunner::Core::restore() {
   if (!records) return parts_.log.error("batches_not_restored", {{"why", records.error().message}});
   for (const BatchRecord& record : *records) {
     auto batch = decode_batch(record.request, record.state);
-    if (batch) add(std::move(*batch));
-    else parts_.log.warn("batch_record_dropped", {{"batch", record.id}});
+    if (!batch) {
+      parts_.log.warn("batch_record_dropped", {{"batch", record.id}});
+      continue;
+    }
+    Live& live = add(std::move(*batch));
+    // Their jobs go on, whatever becomes of what waits.
+    for (std::size_t i = 0; i < live.batch.items().size(); ++i) {
+      if (live.batch.items()[i].state == ItemState::kActive) ask_for_job(live, i);
+    }
   }
   pump();
 }
@@ -46,6 +62,8 @@ BatchRunner::Core::Live& BatchRunner::Core::add(Batch batch) {
   const BatchId id = batch.id;
   auto& live = batches_[id] = std::make_unique<Live>(std::move(batch));
   live->order = next_order_++;
+  live->store_again = limits_.store_again;
+  if (is_running(live->batch)) live->told = std::make_shared<const Batch>(live->batch);
   return *live;
 }
 
@@ -56,30 +74,30 @@ BatchRunner::Core::Live* BatchRunner::Core::find(const BatchId& id) {
 
 BatchPtr BatchRunner::Core::earlier(const std::string& key) {
   for (const auto& [id, live] : batches_) {
-    if (!key.empty() && live->batch.idempotency_key == key) return snapshot(*live);
+    if (!key.empty() && live->batch.idempotency_key == key) return told(*live);
   }
   return nullptr;
 }
 
-/// Forgets the oldest batches that have ended; queue_full where that does not suffice.
-Status BatchRunner::Core::make_room(std::size_t items) {
-  std::size_t running = 0, kept = items;
-  std::vector<Live*> ended;
+/// The oldest batches that have ended and have to go; queue_full where that does not suffice.
+Result<std::vector<BatchId>> BatchRunner::Core::room_for(std::size_t items) const {
+  std::size_t running = 0, kept = items, count = batches_.size();
+  std::vector<const Live*> ended;
   for (const auto& [id, live] : batches_) {
     kept += live->batch.total();
     if (is_running(live->batch)) ++running;
     else ended.push_back(live.get());
   }
   std::sort(ended.begin(), ended.end(), [](const Live* a, const Live* b) { return a->order > b->order; });
-  while (running < limits_.running && (batches_.size() >= limits_.kept || kept > limits_.kept_items) && !ended.empty()) {
-    const BatchId id = ended.back()->batch.id;
-    if (auto removed = parts_.records.remove(id); !removed) return removed;
+  std::vector<BatchId> leave;
+  while ((count >= limits_.kept || kept > limits_.kept_items) && !ended.empty()) {
+    leave.push_back(ended.back()->batch.id);
     kept -= ended.back()->batch.total();
-    batches_.erase(id);
+    --count;
     ended.pop_back();
   }
-  if (running < limits_.running && batches_.size() < limits_.kept && kept <= limits_.kept_items) return success();
-  return Error{ErrorKind::kTooMany, "queue_full", "too many batches are running", "", 10};
+  if (running < limits_.running && count < limits_.kept && kept <= limits_.kept_items) return leave;
+  return too_many_running();
 }
 
 void BatchRunner::Core::submit(BatchRequest request, const std::string& key, const Reply<BatchPtr>& reply) {
@@ -88,20 +106,20 @@ void BatchRunner::Core::submit(BatchRequest request, const std::string& key, con
     if (batch_digest(known->request()) == batch_digest(batch.request())) return reply(known);
     return reply(Error{ErrorKind::kConflict, "idempotency_key_reused", "this key was used for another batch", "Idempotency-Key"});
   }
-  if (auto room = make_room(batch.total()); !room) return reply(room.error());
-  auto stored = parts_.records.add({batch.id, encode_batch_request(batch), encode_batch_state(batch)});
+  const auto leave = room_for(batch.total());
+  if (!leave) return reply(leave.error());
+  auto stored = parts_.records.add({batch.id, encode_batch_request(batch), encode_batch_state(batch)}, *leave);
   if (!stored) return reply(stored.error());
+  for (const BatchId& id : *leave) batches_.erase(id);
   parts_.log.info("batch_started", {{"batch", batch.id}, {"items", batch.total()}});
-  Live& live = add(std::move(batch));
-  reply(snapshot(live));
+  reply(told(add(std::move(batch))));
   pump();
 }
 
 void BatchRunner::Core::get(const BatchId& id, const Reply<BatchPtr>& reply) {
   Live* live = find(id);
   if (live == nullptr) return reply(batch_not_found(id));
-  flush(*live);
-  reply(snapshot(*live));
+  reply(told(*live));
 }
 
 void BatchRunner::Core::list(const std::string& cursor, std::size_t limit, const Reply<BatchPage>& reply) {
@@ -122,8 +140,7 @@ void BatchRunner::Core::list(const std::string& cursor, std::size_t limit, const
     page.next_cursor = sorted.back()->batch.id;
   }
   for (Live* live : sorted) {
-    flush(*live);
-    page.batches.push_back(live->batch.without_items());
+    page.batches.push_back((live->told ? *live->told : live->batch).without_items());
   }
   reply(std::move(page));
 }
@@ -141,7 +158,7 @@ void BatchRunner::Core::cancel(const BatchId& id, const Reply<BatchPtr>& reply) 
     end_if_done(*live);
     flush(*live);
   }
-  reply(snapshot(*live));
+  reply(told(*live));
   pump();
 }
 
@@ -153,7 +170,7 @@ void BatchRunner::Core::rerun(const BatchId& id, const Reply<BatchPtr>& reply) {
   }
   const auto running = std::count_if(batches_.begin(), batches_.end(), [](const auto& b) { return is_running(b.second->batch); });
   if (static_cast<std::size_t>(running) >= limits_.running) {
-    return reply(Error{ErrorKind::kTooMany, "queue_full", "too many batches are running", "", 10});
+    return reply(too_many_running());
   }
   if (live->batch.rerun_failed() > 0) {
     live->batch.cancelled = false;
@@ -161,7 +178,7 @@ void BatchRunner::Core::rerun(const BatchId& id, const Reply<BatchPtr>& reply) {
     changed(*live);
     flush(*live);
   }
-  reply(snapshot(*live));
+  reply(told(*live));
   pump();
 }
 
@@ -173,17 +190,14 @@ void BatchRunner::Core::watch(const BatchId& id, std::function<void()> wake,
   if (watchers_.size() >= limits_.watchers) {
     return reply(Error{ErrorKind::kUnavailable, "too_many_streams", "too many event streams are open", "", 5});
   }
-  flush(*live);
-  auto watcher = std::make_shared<BatchWatcher>(snapshot(*live), std::move(wake));
+  auto watcher = std::make_shared<BatchWatcher>(told(*live), std::move(wake));
   watchers_.emplace(id, watcher);
   reply(std::shared_ptr<BatchSubscription>(std::move(watcher)));
 }
 
-BatchPtr BatchRunner::Core::snapshot(Live& live) {
-  if (live.snapshot) return live.snapshot;
-  auto fresh = std::make_shared<const Batch>(live.batch);
-  if (is_running(live.batch)) live.snapshot = fresh;  // few ask for one that has ended
-  return fresh;
+/// What was told last, which reads see too: they neither wait for the disk nor make it work.
+BatchPtr BatchRunner::Core::told(const Live& live) {
+  return live.told ? live.told : std::make_shared<const Batch>(live.batch);  // one that has ended: few ask
 }
 
 void BatchRunner::Core::changed(Live& live) {
@@ -196,22 +210,41 @@ void BatchRunner::Core::changed(Live& live) {
     late->flush_planned = false;
     core->flush(*late);
   };
-  thread_.post_after(kFlushInterval, [this, step] { post(step); });
+  thread_.post_after(flush_interval(live.batch), [this, step] { post(step); });
 }
 
-/// One revision more: stored, then told. Should the store fail, the next change tries again; what a process that
-/// dies has not stored, the next one asks the scheduler for under the same keys.
+/// One revision more: stored, then told.
 void BatchRunner::Core::flush(Live& live) {
   if (!std::exchange(live.changed, false)) return;
   ++live.batch.revision;
-  live.snapshot.reset();
-  const auto stored = parts_.records.set_state(live.batch.id, encode_batch_state(live.batch));
-  if (!stored) parts_.log.error("batch_not_stored", {{"batch", live.batch.id}, {"why", stored.error().message}});
+  live.told = is_running(live.batch) ? std::make_shared<const Batch>(live.batch) : nullptr;
+  store(live);
   const auto [first, last] = watchers_.equal_range(live.batch.id);
-  const BatchPtr news = first != last ? snapshot(live) : nullptr;
+  const BatchPtr news = first != last ? told(live) : nullptr;
   for (auto at = first; at != last; ++at) {
     if (const auto watcher = at->second.lock()) watcher->tell(news);
   }
+}
+
+/// Should the store fail, the batch goes on, and what was told last is stored later: a process that dies before
+/// asks the scheduler under the same keys.
+void BatchRunner::Core::store(Live& live) {
+  const Batch& newest = live.told ? *live.told : live.batch;
+  const auto stored = parts_.records.set_state(newest.id, encode_batch_state(newest));
+  live.unstored = !stored;
+  if (stored) {
+    live.store_again = limits_.store_again;
+    return;
+  }
+  parts_.log.error("batch_not_stored", {{"batch", newest.id}, {"why", stored.error().message}});
+  if (std::exchange(live.store_planned, true)) return;
+  thread_.post_after(live.store_again, [go = later(newest.id)] {
+    go([](Core& core, Live& there) {
+      there.store_planned = false;
+      if (there.unstored) core.store(there);
+    });
+  });
+  live.store_again = std::min(2 * live.store_again, kLongestStoreWait);
 }
 
 BatchRunner::Core::Later BatchRunner::Core::later(const BatchId& id) {

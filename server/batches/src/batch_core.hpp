@@ -57,9 +57,12 @@ class BatchRunner::Core : public std::enable_shared_from_this<Core> {
     Batch batch;
     std::uint64_t order = 0;                                    ///< of submission
     std::map<std::size_t, std::unique_ptr<Subscription>> jobs{};  ///< watched, by item
+    std::map<std::size_t, std::uint64_t> asked{};               ///< items whose job is asked for; the revision then
     bool changed = false;                                       ///< since the last revision
     bool flush_planned = false;
-    BatchPtr snapshot{};                                        ///< of the last revision; null: to be made
+    BatchPtr told{};                                            ///< the last revision, of a batch that runs
+    bool unstored = false, store_planned = false;               ///< the store failed
+    std::chrono::milliseconds store_again{};
   };
   using Step = std::function<void(Core&, Live&)>;
   /// Runs a step on the thread if runner and batch are still there; callable from any thread.
@@ -68,17 +71,19 @@ class BatchRunner::Core : public std::enable_shared_from_this<Core> {
   // batch_core.cpp
   [[nodiscard]] Live* find(const BatchId& id);
   [[nodiscard]] BatchPtr earlier(const std::string& key);
-  [[nodiscard]] Status make_room(std::size_t items);
+  [[nodiscard]] Result<std::vector<BatchId>> room_for(std::size_t items) const;
   Live& add(Batch batch);
-  [[nodiscard]] BatchPtr snapshot(Live& live);
+  [[nodiscard]] static BatchPtr told(const Live& live);
   void changed(Live& live);
   void flush(Live& live);
+  void store(Live& live);
   [[nodiscard]] Later later(const BatchId& id);
 
   // batch_items.cpp
   void pump();
   void end_if_done(Live& live);
   void start(Live& live, std::size_t index);
+  void ask_for_job(Live& live, std::size_t index);
   void submitted(Live& live, std::size_t index, const Result<SubmittedJob>& answer);
   void watch_job(Live& live, std::size_t index);
   void watching(Live& live, std::size_t index, Result<std::unique_ptr<Subscription>>& answer);

@@ -25,7 +25,7 @@ void BatchRunner::Core::pump() {
     return more != less ? more > less : a->order < b->order;
   });
   for (Live* live : running) {
-    live->batch.skip_after_failure();
+    if (live->batch.skip_after_failure() > 0) changed(*live);
     while (!resting_ && active_ < limits_.jobs) {
       const auto next = live->batch.next_to_start();
       if (!next) break;
@@ -43,22 +43,28 @@ void BatchRunner::Core::end_if_done(Live& live) {
   flush(live);
 }
 
+/// Told when the scheduler has answered: a full queue moves nothing.
 void BatchRunner::Core::start(Live& live, std::size_t index) {
-  const BatchItem& item = live.batch.items()[index];
   live.batch.enter(index, ItemState::kActive);
+  ask_for_job(live, index);
+}
+
+/// Of an active item.
+void BatchRunner::Core::ask_for_job(Live& live, std::size_t index) {
+  const BatchItem& item = live.batch.items()[index];
   ++active_;
+  live.asked[index] = live.batch.revision;
   // The same key after a restart gives the same job. No client can send one with blanks.
   const std::string key = "batch " + live.batch.id + ' ' + std::to_string(index) + ' ' + std::to_string(item.attempt);
   parts_.scheduler.submit({item.request, key}, [go = later(live.batch.id), index](Result<SubmittedJob> answer) {
     go([index, answer = std::move(answer)](Core& core, Live& there) { core.submitted(there, index, answer); });
   });
-  changed(live);
 }
 
 void BatchRunner::Core::submitted(Live& live, std::size_t index, const Result<SubmittedJob>& answer) {
-  if (live.batch.items()[index].state != ItemState::kActive) return;
-  changed(live);
+  const auto asked = live.asked.extract(index);
   if (answer) {
+    changed(live);
     live.batch.item(index).job = answer->job.id;
     if (answer->reused) live.batch.mark_reused(index);
     if (is_final(answer->job.state)) return ended(live, index, answer->job);
@@ -66,15 +72,17 @@ void BatchRunner::Core::submitted(Live& live, std::size_t index, const Result<Su
     return watch_job(live, index);
   }
   --active_;
-  const bool later_perhaps = is_temporary(answer.error()) && !live.batch.cancelled;
-  if (later_perhaps) {
-    live.batch.enter(index, ItemState::kWaiting);
-    rest_a_while();
-  } else if (live.batch.cancelled) {
+  if (live.batch.cancelled) {
     live.batch.enter(index, ItemState::kCancelled);
+    changed(live);
+  } else if (is_temporary(answer.error())) {
+    live.batch.enter(index, ItemState::kWaiting);
+    if (asked.mapped() != live.batch.revision) changed(live);  // it was told as active meanwhile
+    rest_a_while();
   } else {
     live.batch.item(index).error = answer.error();
     live.batch.enter(index, ItemState::kFailed);
+    changed(live);
   }
   pump();
 }
@@ -97,7 +105,7 @@ void BatchRunner::Core::watch_job(Live& live, std::size_t index) {
     // Steps are copied, a subscription is not.
     auto held = std::make_shared<Result<std::unique_ptr<Subscription>>>(std::move(answer));
     go([index, held](Core& core, Live& there) { core.watching(there, index, *held); });
-  });
+  }, Seat::kServer);
 }
 
 void BatchRunner::Core::watching(Live& live, std::size_t index, Result<std::unique_ptr<Subscription>>& answer) {

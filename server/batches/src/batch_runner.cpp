@@ -5,17 +5,11 @@
 namespace raykiln::server {
 namespace {
 
-/// Runs `step(core, reply)` on the runner's thread; answers where there is none any more.
+/// Runs `step(core, reply)` on the runner's thread.
 template <class T, class Core, class Step>
 void ask(const std::shared_ptr<Core>& core, const Reply<T>& reply, Step step) {
-  const bool posted = core->post([core = core.get(), reply, step = std::move(step)] {
-    try {
-      step(*core, reply);
-    } catch (const std::bad_alloc&) {
-      reply(Error{ErrorKind::kInternal, "internal", "out of memory", ""});
-    }
-  });
-  if (!posted) reply(Error{ErrorKind::kUnavailable, "shutting_down", "the server is stopping", "", 5});
+  answer_by([&core](auto run) { return core->post(std::move(run)); }, reply,
+            [core = core.get(), step = std::move(step)](const Reply<T>& to) { step(*core, to); });
 }
 
 }  // namespace

@@ -111,8 +111,9 @@ TEST(Batch, ReadsBackFromItsRecords) {
   EXPECT_TRUE(back->cancelled);
   EXPECT_FALSE(back->finished);
   EXPECT_EQ(back->items()[0].error->code, "scene_not_found");
-  EXPECT_EQ(back->items()[1].state, ItemState::kWaiting) << "what was active is asked for again";
-  EXPECT_EQ(back->count(ItemState::kWaiting), 2U);
+  EXPECT_EQ(back->items()[1].state, ItemState::kActive) << "its job goes on";
+  EXPECT_EQ(back->items()[1].job, "j_1");
+  EXPECT_EQ(back->count(ItemState::kWaiting), 1U);
   EXPECT_EQ(back->reused(), 1U);
   EXPECT_FALSE(decode_batch("rubbish", encode_batch_state(batch)));
   EXPECT_FALSE(decode_batch(encode_batch_request(batch), encode_batch_state(batch_of(3))));

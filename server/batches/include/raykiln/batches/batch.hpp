@@ -77,8 +77,8 @@ class Batch {
 
   /// The item to start now, if one waits and fewer than max_active are active.
   [[nodiscard]] std::optional<std::size_t> next_to_start();
-  /// What still waits after a failure is skipped under fail_fast.
-  void skip_after_failure();
+  /// What still waits after a failure is skipped under fail_fast. Their number.
+  std::size_t skip_after_failure();
   /// Waiting items become cancelled.
   void cancel_waiting();
   /// Failed, cancelled and skipped items wait again, with a new attempt. Their number.
@@ -99,7 +99,7 @@ class Batch {
 /// Two texts for the store: what was asked for, once, and how it stands, with every change.
 [[nodiscard]] std::string encode_batch_request(const Batch& batch);
 [[nodiscard]] std::string encode_batch_state(const Batch& batch);
-/// Items that were active wait again: their jobs are found under their keys.
+/// Active items are so still: their jobs are found under their keys.
 [[nodiscard]] std::optional<Batch> decode_batch(std::string_view request, std::string_view state);
 
 }  // namespace raykiln::server

@@ -1,6 +1,7 @@
 // Runs batches on top of the scheduler's jobs.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "raykiln/base/clock.hpp"
 #include "raykiln/base/log.hpp"
+#include "raykiln/base/reply.hpp"
 #include "raykiln/batches/batch.hpp"
 #include "raykiln/scheduler/scheduler.hpp"
 #include "raykiln/store/batch_records.hpp"
@@ -29,7 +31,8 @@ struct BatchLimits {
   std::size_t kept = 256;          ///< batches in all; the oldest that have ended go first
   std::size_t kept_items = 50'000;
   std::size_t jobs = 64;           ///< of all batches in the scheduler at once
-  std::size_t watchers = 64;
+  std::size_t watchers = 64;       ///< of all batches
+  std::chrono::milliseconds store_again{1000};  ///< after the store failed; twice as long each time, to a minute
 };
 
 struct BatchPage {
