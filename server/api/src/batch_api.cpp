@@ -12,31 +12,41 @@
 namespace raykiln::server {
 namespace {
 
+constexpr std::size_t kTextBytes = 8U << 20U, kTexts = 64;
+constexpr int kMaxWriters = 2;
+
 std::optional<Problem> check_batch_id(const Request& request) {
   if (is_plain_id(path_parameter(request, "batch"), 64)) return std::nullopt;
   return invalid_parameter("batch", "a batch id has 1 to 64 letters, digits, - or _");
 }
 
-Response batch_answer(int status, const Batch& batch) {
-  auto response = json_response(status, batch_json(batch));
+Result<SharedBytes> text_of(EncodedCache& texts, const Batch& batch) {
+  return texts.get(batch.id + ' ' + std::to_string(batch.revision), [&batch] { return batch_json(batch); });
+}
+
+Response batch_answer(int status, const Batch& batch, EncodedCache& texts) {
+  auto text = text_of(texts, batch);
+  if (!text) return to_response(problem_of(text.error()));
+  auto response = json_response(status, std::move(*text));
   if (status == 202) response.headers.emplace_back("Location", "/v1/batches/" + batch.id);
   return response;
 }
 
 /// Calls `operation` of the runner with the id of the path.
 template <class Operation>
-Answer about_batch(const Request& request, int status, const Operation& operation) {
+Answer about_batch(const Request& request, int status, EncodedCache& texts, const Operation& operation) {
   if (auto problem = check_query(request, {})) return to_response(*problem);
   if (auto problem = check_batch_id(request)) return to_response(*problem);
   const auto batch = await<BatchPtr>([&](auto reply) { operation(path_parameter(request, "batch"), std::move(reply)); });
   if (!batch) return to_response(problem_of(batch.error()));
-  return batch_answer(status, **batch);
+  return batch_answer(status, **batch, texts);
 }
 
 class BatchFeed final : public EventFeed {
  public:
-  BatchFeed(std::shared_ptr<WakeRelay> relay, std::shared_ptr<BatchSubscription> subscription)
-      : relay_(std::move(relay)), subscription_(std::move(subscription)) {}
+  BatchFeed(std::shared_ptr<WakeRelay> relay, std::shared_ptr<BatchSubscription> subscription,
+            std::shared_ptr<EncodedCache> texts)
+      : relay_(std::move(relay)), subscription_(std::move(subscription)), texts_(std::move(texts)) {}
   ~BatchFeed() override { relay_->disconnect(); }
   BatchFeed(const BatchFeed&) = delete;
   BatchFeed& operator=(const BatchFeed&) = delete;
@@ -45,16 +55,25 @@ class BatchFeed final : public EventFeed {
   [[nodiscard]] FeedStep poll() override {
     const BatchPtr batch = subscription_->take();
     if (!batch) return {};
-    return {"id: " + std::to_string(batch->revision) + "\nevent: batch\ndata: " + batch_json(*batch) + "\n\n",
-            batch->finished.has_value()};
+    const auto text = text_of(*texts_, *batch);
+    if (!text) return {.event = {}, .finished = true};  // no memory: the client connects again
+    std::string event = "id: " + std::to_string(batch->revision) + "\nevent: batch\ndata: ";
+    return {event.append(**text).append("\n\n"), batch->finished.has_value()};
   }
 
  private:
   std::shared_ptr<WakeRelay> relay_;
   std::shared_ptr<BatchSubscription> subscription_;
+  std::shared_ptr<EncodedCache> texts_;
 };
 
 }  // namespace
+
+BatchApi::BatchApi(const Config& config, BatchRunner& batches, Store& store)
+    : limits_(config.jobs),
+      batches_(batches),
+      store_(store),
+      texts_(std::make_shared<EncodedCache>(kTextBytes, kTexts, kMaxWriters)) {}
 
 Answer BatchApi::create_batch(const Request& request) {
   if (auto problem = check_query(request, {})) return to_response(*problem);
@@ -66,7 +85,7 @@ Answer BatchApi::create_batch(const Request& request) {
     batches_.submit(std::get<BatchRequest>(std::move(parsed)), key != nullptr ? *key : "", std::move(reply));
   });
   if (!batch) return to_response(problem_of(batch.error()));
-  return batch_answer(202, **batch);
+  return batch_answer(202, **batch, *texts_);
 }
 
 Answer BatchApi::list_batches(const Request& request) {
@@ -81,13 +100,13 @@ Answer BatchApi::list_batches(const Request& request) {
 }
 
 Answer BatchApi::get_batch(const Request& request) {
-  return about_batch(request, 200, [this](auto id, auto reply) { batches_.get(std::move(id), std::move(reply)); });
+  return about_batch(request, 200, *texts_, [this](auto id, auto reply) { batches_.get(std::move(id), std::move(reply)); });
 }
 Answer BatchApi::cancel_batch(const Request& request) {
-  return about_batch(request, 202, [this](auto id, auto reply) { batches_.cancel(std::move(id), std::move(reply)); });
+  return about_batch(request, 202, *texts_, [this](auto id, auto reply) { batches_.cancel(std::move(id), std::move(reply)); });
 }
 Answer BatchApi::rerun_batch(const Request& request) {
-  return about_batch(request, 202, [this](auto id, auto reply) { batches_.rerun(std::move(id), std::move(reply)); });
+  return about_batch(request, 202, *texts_, [this](auto id, auto reply) { batches_.rerun(std::move(id), std::move(reply)); });
 }
 
 Answer BatchApi::watch_batch(const Request& request) {
@@ -107,7 +126,7 @@ Answer BatchApi::watch_batch(const Request& request) {
     batches_.watch(id, [relay] { relay->wake(); }, std::move(reply));
   });
   if (!subscription) return to_response(problem_of(subscription.error()));
-  return std::make_unique<BatchFeed>(std::move(relay), std::move(subscription).value());
+  return std::make_unique<BatchFeed>(std::move(relay), std::move(subscription).value(), texts_);
 }
 
 Answer BatchApi::missing_scenes(const Request& request) {

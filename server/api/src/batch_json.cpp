@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "problem_value.hpp"
 #include "raykiln/api/job_json.hpp"
 
 namespace raykiln::server {
@@ -19,7 +20,7 @@ Json item_value(const BatchItem& item) {
           {"job", item.job.empty() ? Json(nullptr) : Json(item.job)},
           {"reused", item.reused},
           {"attempt", item.attempt},
-          {"error", item.error ? Json::parse(problem_json(problem_of(*item.error))) : Json(nullptr)}};
+          {"error", error_value(item.error)}};
 }
 
 Json summary_value(const Batch& batch) {
@@ -41,12 +42,6 @@ Json summary_value(const Batch& batch) {
           {"fail_fast", batch.request().fail_fast},
           {"reuse", batch.request().reuse},
           {"counts", std::move(counts)}};
-}
-
-std::string error_text(const json& error) {
-  std::string text = error.at("code").get<std::string>() + ": " + error.at("detail").get<std::string>();
-  const std::string where = error.value("where", "");
-  return where.empty() ? text : text + " (" + where + ')';
 }
 
 }  // namespace

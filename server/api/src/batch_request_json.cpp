@@ -17,14 +17,6 @@ using Need = FieldReader::Need;
 
 constexpr std::size_t kMostSettingsBytes = 4096;  ///< of one entry: it is copied into every picture
 
-Problem problem_of_fields(Errors errors) {
-  Problem problem{422, "invalid_request",
-                  errors.size() == 1 ? (errors[0].pointer.empty() ? "the body" : errors[0].pointer) + ' ' + errors[0].detail
-                                     : std::to_string(errors.size()) + " fields are wrong"};
-  problem.errors = std::move(errors);
-  return problem;
-}
-
 class Matrix {
  public:
   Matrix(const JobLimits& limits, Errors& errors, BatchRequest& batch) : limits_(limits), errors_(errors), batch_(batch) {}
@@ -120,12 +112,7 @@ class Matrix {
     }
     whole["scene"] = scene;
     whole["name"] = item.name;
-    auto parsed = parse_job_request(whole.dump(-1, ' ', false, json::error_handler_t::replace), limits_);
-    if (auto* problem = std::get_if<Problem>(&parsed)) {
-      for (const auto& error : problem->errors) wrong(pointer + error.pointer, error.code.c_str(), error.detail);
-      return;
-    }
-    item.request = std::get<JobRequest>(std::move(parsed));
+    item.request = read_job_request(whole, pointer, limits_, errors_);
     batch_.items.push_back(std::move(item));
   }
 
@@ -140,23 +127,15 @@ class Matrix {
 }  // namespace
 
 std::variant<BatchRequest, Problem> parse_batch_request(std::string_view body, const JobLimits& limits) {
-  Errors errors;
-  auto parsed = parse_json(body, errors);
-  if (auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-  const json& value = std::get<json>(parsed);
-  if (!value.is_object()) return problem_of_fields({{"", "wrong_type", "must be an object"}});
-  BatchRequest batch;
-  FieldReader reader(value, "", errors);
-  if (const auto text = reader.text("name", {0, limits.max_name_bytes})) batch.name = *text;
-  const auto most_priority = static_cast<std::uint64_t>(limits.max_priority);
-  if (const auto n = reader.natural("priority", {1, most_priority})) batch.priority = static_cast<int>(*n);
-  if (const auto n = reader.natural("max_active", {1, kMostActiveItems})) batch.max_active = static_cast<int>(*n);
-  batch.fail_fast = reader.boolean("fail_fast").value_or(batch.fail_fast);
-  batch.reuse = reader.boolean("reuse").value_or(batch.reuse);
-  Matrix(limits, errors, batch).read(reader);
-  reader.finish();
-  if (!errors.empty()) return problem_of_fields(std::move(errors));
-  return batch;
+  return parse_object<BatchRequest>(body, [&](FieldReader& reader, Errors& errors, BatchRequest& batch) {
+    if (const auto text = reader.text("name", {0, limits.max_name_bytes})) batch.name = *text;
+    const auto most_priority = static_cast<std::uint64_t>(limits.max_priority);
+    if (const auto n = reader.natural("priority", {1, most_priority})) batch.priority = static_cast<int>(*n);
+    if (const auto n = reader.natural("max_active", {1, kMostActiveItems})) batch.max_active = static_cast<int>(*n);
+    batch.fail_fast = reader.boolean("fail_fast").value_or(batch.fail_fast);
+    batch.reuse = reader.boolean("reuse").value_or(batch.reuse);
+    Matrix(limits, errors, batch).read(reader);
+  });
 }
 
 std::string batch_request_json(const BatchRequest& batch) {
@@ -175,26 +154,17 @@ std::string batch_request_json(const BatchRequest& batch) {
 }
 
 std::variant<std::vector<std::string>, Problem> parse_scene_ids(std::string_view body) {
-  Errors errors;
-  auto parsed = parse_json(body, errors);
-  if (auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-  const json& value = std::get<json>(parsed);
-  if (!value.is_object()) return problem_of_fields({{"", "wrong_type", "must be an object"}});
-  FieldReader reader(value, "", errors);
-  std::vector<std::string> ids;
-  if (const json* scenes = reader.any("scenes", Need::kRequired)) {
+  return parse_object<std::vector<std::string>>(body, [](FieldReader& reader, Errors&, std::vector<std::string>& ids) {
+    const json* scenes = reader.any("scenes", Need::kRequired);
+    if (scenes == nullptr) return;
     const bool listed = scenes->is_array() && scenes->size() <= kMostItems;
     for (std::size_t i = 0; listed && i < scenes->size(); ++i) {
       const json& id = (*scenes)[i];
       if (id.is_string() && is_sha256_hex(id.get_ref<const std::string&>())) ids.push_back(id.get<std::string>());
     }
-    if (!listed || ids.size() != scenes->size()) {
-      reader.error("scenes", "invalid_value", "must be a list of at most " + std::to_string(kMostItems) + " scene ids");
-    }
-  }
-  reader.finish();
-  if (!errors.empty()) return problem_of_fields(std::move(errors));
-  return ids;
+    if (listed && ids.size() == scenes->size()) return;
+    reader.error("scenes", "invalid_value", "must be a list of at most " + std::to_string(kMostItems) + " scene ids");
+  });
 }
 
 }  // namespace raykiln::server

@@ -6,6 +6,7 @@
 
 #include "effects_json.hpp"
 #include "job_request_value.hpp"
+#include "problem_value.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -87,11 +88,6 @@ Json prepare_value(const JobSnapshot& job) {
   return {{"stage", name(stage)}, {"fraction", job.prepare.fraction}};
 }
 
-Json error_value(const JobSnapshot& job) {
-  if (!job.error) return nullptr;
-  return Json::parse(problem_json(problem_of(*job.error)));
-}
-
 Json image_value(const JobSnapshot& job) {
   if (job.image_revision == 0) return nullptr;
   const std::string revision = std::to_string(job.image_revision);
@@ -152,7 +148,7 @@ Json job_value(const JobSnapshot& job) {
           {"done_by", job.done_by == DoneBy::kNone ? Json(nullptr) : Json(name(job.done_by))},
           {"effects", effect_report_value(job.effects)},
           {"warnings", std::move(warnings)},
-          {"error", error_value(job)},
+          {"error", error_value(job.error)},
           {"image", image_value(job)}};
 }
 

@@ -84,20 +84,23 @@ void read_tile_samples(FieldReader& reader, const json& list, const JobLimits& l
   rule.tile_samples = list.get<std::vector<std::uint64_t>>();
 }
 
-void read_stop(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
+/// Of a whole job, or of what is added to one, which has no samples of tiles.
+enum class StopOf : bool { kJob, kExtension };
+
+void read_stop(FieldReader& reader, const JobLimits& limits, Errors& errors, StopRule& rule, StopOf what) {
   const json* value = reader.any("stop", Need::kRequired);
   if (value == nullptr) return;
   if (!value->is_object()) {
     return reader.error("stop", "wrong_type", "must be an object such as {\"samples\": 64}");
   }
   FieldReader stop(*value, reader.pointer_to("stop"), errors);
-  StopRule& rule = request.stop;
   const auto samples = stop.natural("samples", {1, limits.max_samples});
   rule.seconds = positive(stop, "seconds", limits.max_seconds);
   rule.error = positive(stop, "error", 1.0);
-  if (const auto* list = stop.any("tile_samples")) read_tile_samples(stop, *list, limits, rule);
+  const auto* list = what == StopOf::kJob ? stop.any("tile_samples") : nullptr;
+  if (list != nullptr) read_tile_samples(stop, *list, limits, rule);
   stop.finish();
-  const bool other = value->contains("seconds") || value->contains("error") || value->contains("tile_samples");
+  const bool other = value->contains("seconds") || value->contains("error") || list != nullptr;
   if (!samples && !other && !value->contains("samples")) {
     return reader.error("stop", "missing_field", "needs samples, seconds or error");
   }
@@ -176,48 +179,31 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
   read_integer(reader, "priority", {1, as_bound(limits.max_priority)}, Need::kOptional, request.priority);
 }
 
-/// Reads an object by `read`; the problem tells all that is wrong with it.
-template <class Value, class Read>
-std::variant<Value, Problem> parse_object(std::string_view body, Read read) {
-  Errors errors;
-  auto parsed = parse_json(body, errors);
-  if (auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-  const json& value = std::get<json>(parsed);
-  Value result;
-  if (value.is_object()) {
-    FieldReader reader(value, "", errors);
-    read(reader, errors, result);
-    reader.finish();
-  } else {
-    errors.push_back({"", "wrong_type", "must be an object"});
-  }
-  if (errors.empty()) return result;
-  Problem problem{422, "invalid_request",
-                  errors.size() == 1 ? (errors[0].pointer.empty() ? "the body" : errors[0].pointer) + ' ' +
-                                           errors[0].detail
-                                     : std::to_string(errors.size()) + " fields are wrong"};
-  problem.errors = std::move(errors);
-  return problem;
+void read_job(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
+  read_picture(reader, limits, errors, request);
+  read_stop(reader, limits, errors, request.stop, StopOf::kJob);
+  request.reuse = reader.boolean("reuse").value_or(false);
 }
 
 }  // namespace
 
+JobRequest read_job_request(const json& object, std::string pointer, const JobLimits& limits, Errors& errors) {
+  JobRequest request;
+  FieldReader reader(object, std::move(pointer), errors);
+  read_job(reader, limits, errors, request);
+  reader.finish();
+  return request;
+}
+
 std::variant<JobRequest, Problem> parse_job_request(std::string_view body, const JobLimits& limits) {
   return parse_object<JobRequest>(body, [&](FieldReader& reader, Errors& errors, JobRequest& request) {
-    read_picture(reader, limits, errors, request);
-    read_stop(reader, limits, errors, request);
-    request.reuse = reader.boolean("reuse").value_or(false);
+    read_job(reader, limits, errors, request);
   });
 }
 
 std::variant<Extension, Problem> parse_extension(std::string_view body, const JobLimits& limits) {
   return parse_object<Extension>(body, [&](FieldReader& reader, Errors& errors, Extension& extension) {
-    JobRequest request;
-    read_stop(reader, limits, errors, request);
-    if (!request.stop.tile_samples.empty()) {
-      reader.error("stop", "invalid_value", "tile_samples are of a whole job, not of what is added to one");
-    }
-    extension.stop = request.stop;
+    read_stop(reader, limits, errors, extension.stop, StopOf::kExtension);
     if (const auto priority = reader.natural("priority", {1, as_bound(limits.max_priority)})) {
       extension.priority = static_cast<int>(*priority);
     }

@@ -1,18 +1,13 @@
 // The client's side: schema Job read back, leniently (fields may be added), but typed.
 #include <nlohmann/json.hpp>
 
+#include "problem_value.hpp"
 #include "raykiln/api/job_json.hpp"
 
 namespace raykiln::server {
 namespace {
 
 using nlohmann::json;
-
-std::string error_text(const json& error) {
-  std::string text = error.at("code").get<std::string>() + ": " + error.at("detail").get<std::string>();
-  const std::string where = error.value("where", "");
-  return where.empty() ? text : text + " (" + where + ')';
-}
 
 /// Throws json::exception when something that a job must have is missing.
 JobView view_of(const json& job) {

@@ -175,4 +175,13 @@ void FieldReader::finish() {
   }
 }
 
+Problem problem_of_fields(std::vector<FieldError> errors) {
+  const FieldError& first = errors.front();
+  const std::string place = first.pointer.empty() ? "the body" : first.pointer;
+  Problem problem{422, "invalid_request",
+                  errors.size() == 1 ? place + ' ' + first.detail : std::to_string(errors.size()) + " fields are wrong"};
+  problem.errors = std::move(errors);
+  return problem;
+}
+
 }  // namespace raykiln::server

@@ -55,4 +55,26 @@ class FieldReader {
   std::vector<std::string> known_;
 };
 
+/// What is wrong with the fields of a body, all of it. Precondition: something is.
+[[nodiscard]] Problem problem_of_fields(std::vector<FieldError> errors);
+
+/// Reads the body as an object by `read(FieldReader&, errors, value)`; the problem tells all that is wrong with it.
+template <class Value, class Read>
+std::variant<Value, Problem> parse_object(std::string_view body, Read read) {
+  std::vector<FieldError> errors;
+  auto parsed = parse_json(body, errors);
+  if (auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+  const auto& object = std::get<nlohmann::json>(parsed);
+  Value result;
+  if (object.is_object()) {
+    FieldReader reader(object, "", errors);
+    read(reader, errors, result);
+    reader.finish();
+  } else {
+    errors.push_back({"", "wrong_type", "must be an object"});
+  }
+  if (errors.empty()) return result;
+  return problem_of_fields(std::move(errors));
+}
+
 }  // namespace raykiln::server

@@ -1,6 +1,6 @@
 #include "raykiln/api/problem.hpp"
 
-#include <nlohmann/json.hpp>
+#include "problem_value.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -68,7 +68,7 @@ Problem problem_of(const Error& error) {
   return problem;
 }
 
-std::string problem_json(const Problem& problem) {
+nlohmann::ordered_json problem_value(const Problem& problem) {
   nlohmann::ordered_json json{{"type", "about:blank#" + problem.code},
                               {"title", reason_phrase(problem.status)},
                               {"status", problem.status},
@@ -79,8 +79,22 @@ std::string problem_json(const Problem& problem) {
     json["errors"].push_back(
         {{"pointer", error.pointer}, {"code", error.code}, {"detail", error.detail}});
   }
+  return json;
+}
+
+nlohmann::ordered_json error_value(const std::optional<Error>& error) {
+  return error ? problem_value(problem_of(*error)) : nlohmann::ordered_json(nullptr);
+}
+
+std::string error_text(const nlohmann::json& problem) {
+  std::string text = problem.at("code").get<std::string>() + ": " + problem.at("detail").get<std::string>();
+  const std::string where = problem.value("where", "");
+  return where.empty() ? text : text + " (" + where + ')';
+}
+
+std::string problem_json(const Problem& problem) {
   // Text of strangers (names, parts of files) may hold anything: bad UTF-8 is replaced.
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return problem_value(problem).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 Response to_response(const Problem& problem) {

@@ -69,11 +69,15 @@ std::optional<Problem> check_job_id(const Request& request) {
 }
 
 Response json_response(int status, std::string json) {
+  return json_response(status, std::make_shared<const std::string>(std::move(json)));
+}
+
+Response json_response(int status, SharedBytes json) {
   Response response;
   response.status = status;
   response.content_type = "application/json";
   response.headers.emplace_back("Cache-Control", "no-store");
-  response.body = std::make_shared<const std::string>(std::move(json));
+  response.body = std::move(json);
   return response;
 }
 

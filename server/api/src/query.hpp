@@ -36,5 +36,6 @@ namespace raykiln::server {
 [[nodiscard]] std::string path_parameter(const Request& request, std::string_view name);
 
 [[nodiscard]] Response json_response(int status, std::string json);
+[[nodiscard]] Response json_response(int status, SharedBytes json);
 
 }  // namespace raykiln::server

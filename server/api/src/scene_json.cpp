@@ -123,11 +123,10 @@ std::optional<ScenePageView> parse_scene_page(std::string_view text) {
 
 std::string problem_text(std::string_view text) {
   try {
-    const Json problem = Json::parse(text.begin(), text.end());
-    std::string out = problem.at("code").get<std::string>() + ": " + problem.at("detail").get<std::string>();
-    if (problem.contains("where")) out += " (" + problem["where"].get<std::string>() + ')';
+    const auto problem = nlohmann::json::parse(text.begin(), text.end());
+    std::string out = error_text(problem);
     if (problem.contains("errors") && problem["errors"].size() > 1) {
-      for (const Json& error : problem["errors"]) {
+      for (const auto& error : problem["errors"]) {
         out += "\n  " + error.at("pointer").get<std::string>() + ' ' + error.at("detail").get<std::string>();
       }
     }

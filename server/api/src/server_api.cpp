@@ -5,8 +5,8 @@
 namespace raykiln::server {
 namespace {
 
-constexpr std::size_t kImageCacheBytes = 256U << 20U;
-constexpr std::size_t kImageCacheEntries = 64;
+constexpr std::size_t kImageBytes = 256U << 20U;
+constexpr std::size_t kImageEntries = 64;
 constexpr int kMaxEncoders = 2;
 
 Response health(const char* status, const std::string& version) {
@@ -18,7 +18,7 @@ Response health(const char* status, const std::string& version) {
 Api::Api(const Config& config, Parts parts)
     : config_(config),
       parts_(std::move(parts)),
-      images_(kImageCacheBytes, kImageCacheEntries, kMaxEncoders),
+      images_(kImageBytes, kImageEntries, kMaxEncoders),
       uploads_(std::make_shared<std::atomic<int>>(0)) {}
 
 Answer Api::livez(const Request& request) {

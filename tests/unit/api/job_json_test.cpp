@@ -116,6 +116,24 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   EXPECT_EQ(errors_of("{}").size(), 4U);
 }
 
+TEST(Extension, TakesAStopWithoutTilesAndNothingElse) {
+  const auto whole = parse_extension(R"({"stop": {"samples": 9, "seconds": 2, "error": 0.5}, "priority": 3})", JobLimits{});
+  const auto* extension = std::get_if<Extension>(&whole);
+  ASSERT_NE(extension, nullptr);
+  EXPECT_EQ(extension->stop.samples, 9U);
+  EXPECT_EQ(extension->priority, 3);
+  for (const auto& [body, pointer] : {std::pair{R"({"stop": {"samples": 9, "tile_samples": [1]}})", "/stop/tile_samples"},
+                                      {R"({"stop": {"tile_samples": [1]}})", "/stop/tile_samples"},
+                                      {R"({"stop": {}})", "/stop"},
+                                      {R"({"priority": 3})", "/stop"},
+                                      {R"({"stop": {"samples": 9}, "reuse": true})", "/reuse"}}) {
+    const auto refused = parse_extension(body, JobLimits{});
+    const auto* problem = std::get_if<Problem>(&refused);
+    ASSERT_NE(problem, nullptr) << body;
+    EXPECT_EQ(problem->errors.front().pointer, pointer) << body;
+  }
+}
+
 TEST(JobRequestJson, EffectsHaveOneSpelling) {
   const auto effects_of = [](const json& value) {
     json body = smallest();

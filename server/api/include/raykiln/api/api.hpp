@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "raykiln/api/image_cache.hpp"
+#include "raykiln/api/encoded_cache.hpp"
 #include "raykiln/api/message.hpp"
 #include "raykiln/base/config.hpp"
 #include "raykiln/base/log.hpp"
@@ -55,7 +55,7 @@ class Api {
 
   Config config_;
   Parts parts_;
-  ImageCache images_;
+  EncodedCache images_;
   std::shared_ptr<std::atomic<int>> uploads_;  ///< in progress
   std::atomic<int> replays_{0};                 ///< in progress
 };

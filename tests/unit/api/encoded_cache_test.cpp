@@ -1,4 +1,4 @@
-#include "raykiln/api/image_cache.hpp"
+#include "raykiln/api/encoded_cache.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 namespace raykiln::server {
 namespace {
 
-TEST(ImageCache, EncodesOnceForAllWhoAsk) {
-  ImageCache cache(1000, 10, 2);
+TEST(EncodedCache, EncodesOnceForAllWhoAsk) {
+  EncodedCache cache(1000, 10, 2);
   std::atomic<int> encodings = 0;
   std::vector<std::jthread> threads;
   for (int i = 0; i < 8; ++i) {
@@ -27,8 +27,8 @@ TEST(ImageCache, EncodesOnceForAllWhoAsk) {
   EXPECT_EQ(encodings, 1);
 }
 
-TEST(ImageCache, DropsTheLeastRecentlyUsed) {
-  ImageCache cache(100, 10, 1);
+TEST(EncodedCache, DropsTheLeastRecentlyUsed) {
+  EncodedCache cache(100, 10, 1);
   int encodings = 0;
   const auto get = [&](const std::string& key) {
     static_cast<void>(cache.get(key, [&]() -> Result<std::string> {
@@ -47,15 +47,15 @@ TEST(ImageCache, DropsTheLeastRecentlyUsed) {
   EXPECT_EQ(encodings, 4);
 }
 
-TEST(ImageCache, ServesWhatIsTooLargeToKeep) {
-  ImageCache cache(10, 10, 1);
+TEST(EncodedCache, ServesWhatIsTooLargeToKeep) {
+  EncodedCache cache(10, 10, 1);
   const auto bytes = cache.get("a", [] { return Result<std::string>(std::string(50, 'x')); });
   EXPECT_EQ((*bytes)->size(), 50U);
   EXPECT_EQ(cache.bytes(), 0U);
 }
 
-TEST(ImageCache, ForgetsFailures) {
-  ImageCache cache(100, 10, 1);
+TEST(EncodedCache, ForgetsFailures) {
+  EncodedCache cache(100, 10, 1);
   EXPECT_FALSE(cache.get("a", []() -> Result<std::string> { throw std::runtime_error("no memory"); }));
   EXPECT_TRUE(cache.get("a", [] { return Result<std::string>(std::string("x")); }));
 }

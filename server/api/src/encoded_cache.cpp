@@ -1,14 +1,14 @@
-#include "raykiln/api/image_cache.hpp"
+#include "raykiln/api/encoded_cache.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace raykiln::server {
 
-ImageCache::ImageCache(std::size_t max_bytes, std::size_t max_entries, int max_encoders)
+EncodedCache::EncodedCache(std::size_t max_bytes, std::size_t max_entries, int max_encoders)
     : max_bytes_(max_bytes), max_entries_(max_entries), free_encoders_(max_encoders) {}
 
-Result<SharedBytes> ImageCache::get(const std::string& key, const Encode& encode) {
+Result<SharedBytes> EncodedCache::get(const std::string& key, const Encode& encode) {
   std::unique_lock lock(mutex_);
   while (true) {
     const auto found = find(key);
@@ -45,17 +45,17 @@ Result<SharedBytes> ImageCache::get(const std::string& key, const Encode& encode
   return SharedBytes(bytes);
 }
 
-std::size_t ImageCache::bytes() const {
+std::size_t EncodedCache::bytes() const {
   const std::lock_guard lock(mutex_);
   return bytes_;
 }
 
-ImageCache::Position ImageCache::find(const std::string& key) {
+EncodedCache::Position EncodedCache::find(const std::string& key) {
   return std::find_if(entries_.begin(), entries_.end(),
                       [&](const Entry& entry) { return entry.key == key; });
 }
 
-void ImageCache::trim() {
+void EncodedCache::trim() {
   auto at = entries_.end();
   while (at != entries_.begin() && (bytes_ > max_bytes_ || entries_.size() > max_entries_)) {
     --at;

@@ -1,4 +1,4 @@
-// Encoded pictures: made once per revision and parameters, kept in bounded memory.
+// Encoded pictures and batches: made once per revision and parameters, kept in bounded memory.
 #pragma once
 
 #include <condition_variable>
@@ -13,11 +13,11 @@
 
 namespace raykiln::server {
 
-/// Single flight: of several who want the same picture at once, one encodes and the others wait.
+/// Single flight: of several who want the same at once, one encodes and the others wait.
 /// At most `max_encoders` encode at a time. Safe to use from any thread.
-class ImageCache {
+class EncodedCache {
  public:
-  ImageCache(std::size_t max_bytes, std::size_t max_entries, int max_encoders);
+  EncodedCache(std::size_t max_bytes, std::size_t max_entries, int max_encoders);
 
   using Encode = std::function<Result<std::string>()>;
 
