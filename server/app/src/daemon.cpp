@@ -81,7 +81,8 @@ class Daemon {
                {store, *intake_, pool_, clock_, metrics_, log_.channel("workers"), {}}),
         scheduler_(config_, {store, pool_, *intake_, cache_, clock_, metrics_, log_.channel("scheduler")}),
         api_(config_, {scheduler_, store, metrics_, log_.channel("api")}),
-        batches_({scheduler_, records, clock_, log_.channel("batches")}),
+        batches_({scheduler_, records, clock_, log_.channel("batches")},
+                 {.watchers = options.max_batch_watchers}),
         batch_api_(config_, batches_, store),
         routes_(make_routes(api_, batch_api_, files, config_.http.max_json_bytes)),
         server_(server_settings(options), {routes_, clock_, metrics_, log_.channel("http")}) {}

@@ -72,7 +72,9 @@ ParsedDaemon parse_daemon_options(int argc, const char* const* argv) {
   app.add_option("--max-connections", config.http.max_connections)
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  app.add_option("--max-watchers", config.http.max_watchers, "event streams at once")
+  app.add_option("--max-watchers", config.http.max_watchers, "event streams of jobs at once")
+      ->capture_default_str();
+  app.add_option("--max-batch-watchers", parsed.options.max_batch_watchers, "event streams of batches at once")
       ->capture_default_str();
   app.add_option("--drain-seconds", drain_seconds, "time for running jobs after a signal")
       ->check(CLI::Range(0, 86400))

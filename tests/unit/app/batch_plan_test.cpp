@@ -98,6 +98,38 @@ TEST(Yaml, ScalarsAreThoseOfJson) {
   EXPECT_EQ(to_json(*value), R"(["no","012",1e3,-0.5,"true",true,null,null,".5","7","a\"b"])");
 }
 
+TEST(Yaml, HostileDocumentsAreRefusedSoon) {
+  const auto repeated = [](const char* piece, std::size_t bytes) {
+    std::string text;
+    while (text.size() < bytes) text += piece;
+    return text;
+  };
+  EXPECT_FALSE(parse_yaml(std::string(1'000'000, '[')));
+  EXPECT_FALSE(parse_yaml(repeated("{a: ", 1'000'000)));
+  EXPECT_FALSE(parse_yaml(repeated("- ", 1'000'000)));
+  EXPECT_FALSE(parse_yaml("[" + repeated(",", 1'000'000)));
+  EXPECT_FALSE(parse_yaml("a: &a [*a]"));
+  std::string keys;  // all different: as many comparisons as their number, not its square
+  for (int i = 0; i < 60'000; ++i) keys.append("k").append(std::to_string(i)).append(": 1\n");
+  EXPECT_TRUE(parse_yaml(keys));
+}
+
+TEST(BatchPlan, WhatIsCopiedIntoEveryPictureIsBounded) {
+  const auto refused = [](const std::string& text, const char* part) {
+    const auto plan = planned(text);
+    ASSERT_FALSE(plan);
+    EXPECT_NE(plan.error().message.find(part), std::string::npos) << plan.error().message.substr(0, 200);
+  };
+  refused("defaults: {name: " + std::string(5000, 'x') + "}\nscenes: [{scene: a.obj}]", "4096");
+  refused("reference: " + std::string(5000, 'x') + "\nscenes: [{scene: a.obj}]", "4096");
+  refused("name: " + std::string(201, 'x') + "\nscenes: [{scene: a.obj}]", "at most 200 bytes");
+  std::string many = "scenes:\n- scene: a.obj\n  cameras: [";
+  for (int i = 0; i < 40; ++i) many.append(std::to_string(i)).append(",");
+  many += "]\n  settings: [";
+  for (int i = 0; i < 40; ++i) many.append("{name: s").append(std::to_string(i)).append("},");
+  refused(many + "]", "more than 1000 pictures");
+}
+
 TEST(BatchPlan, ALongTextBehindManyAliasesIsRefused) {
   std::string text = "[&a \"" + std::string(500'000, 'x') + '"';
   for (int i = 0; i < 20; ++i) text += ", *a";

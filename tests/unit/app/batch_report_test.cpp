@@ -54,6 +54,21 @@ TEST(BatchReport, AMissingReferenceIsNoSuccess) {
   EXPECT_EQ(count(batch_json(result), "\"verdict\":\"no_reference\""), 1U);
 }
 
+TEST(BatchReport, AThousandLongFailuresFitIntoWhatCiTakes) {
+  const BatchPlan plan = plan_of(1000);
+  BatchResult result = result_of(plan);
+  std::string why;
+  while (why.size() < 40'000) why += "why \xC3\xA4 ";
+  for (auto& r : result.pictures) {
+    r.state = PictureState::kFailed;
+    r.failure = why;
+  }
+  const std::string xml = junit_xml(result);
+  EXPECT_LT(xml.size(), 30'000'000U);
+  EXPECT_EQ(count(xml, "<error "), 1000U);
+  EXPECT_EQ(count(xml, "\xC3\""), 0U) << "no character is cut in two";
+}
+
 TEST(BatchReport, AWaitThatEndedComesBeforeAll) {
   const BatchPlan plan = plan_of(2);
   BatchResult result = result_of(plan);

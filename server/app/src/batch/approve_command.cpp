@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 30U;
 /// A report has a few kilobytes and a hundred values a picture.
-constexpr DocumentBounds kReportBounds{std::size_t{64} << 20U, 2'000'000};
+constexpr DocumentBounds kReportBounds{std::size_t{16} << 20U, 400'000};
 
 std::string text_of(const Value& map, const char* key) {
   const Value* value = map.find(key);

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "../one_line.hpp"
 #include "../output_file.hpp"
 #include "../scratch.hpp"
 #include "batch_run.hpp"
@@ -42,9 +43,8 @@ bool write_reports(const CliOptions& options, const BatchResult& result, const s
 }
 
 ExitCode complain(const std::filesystem::path& file, const Error& error) {
-  std::cerr << "raykiln: " << file.string() << ": " << error.message;
-  if (!error.where.empty()) std::cerr << " (" << error.where << ')';
-  std::cerr << '\n';
+  std::cerr << "raykiln: " << one_line(file.string() + ": " + error.message + (error.where.empty() ? "" : " (" + error.where + ')'))
+            << '\n';
   return error.kind == ErrorKind::kInvalid ? ExitCode::kUsage : ExitCode::kScene;
 }
 

@@ -1,5 +1,7 @@
 #include "batch_judge.hpp"
 
+#include <new>
+
 #include "../input_file.hpp"
 #include "../output_file.hpp"
 #include "raykiln/image/decode.hpp"
@@ -39,14 +41,8 @@ void fail(PictureResult& result, const PlannedPicture& planned, const std::strin
   result.failure = "reference_unreadable: " + why + " (" + planned.reference.string() + ")";
 }
 
-}  // namespace
-
-std::string failure_text(const Error& error) {
-  return error.code + ": " + error.message + (error.where.empty() ? "" : " (" + error.where + ")");
-}
-
-Status judge_render(const BatchPlan& plan, const PlannedPicture& planned, const Bytes& exr,
-                    const std::filesystem::path& folder, PictureResult& result) {
+Status judge(const BatchPlan& plan, const PlannedPicture& planned, const Bytes& exr, const std::filesystem::path& folder,
+             PictureResult& result) {
   std::error_code error;
   std::filesystem::create_directories(folder / "pictures", error);
   if (error) return Error{ErrorKind::kInternal, "internal", error.message(), folder.string()};
@@ -73,6 +69,23 @@ Status judge_render(const BatchPlan& plan, const PlannedPicture& planned, const 
   comparison.z_map_png.clear();
   result.comparison = std::move(comparison);
   return success();
+}
+
+}  // namespace
+
+std::string failure_text(const Error& error) {
+  return error.code + ": " + error.message + (error.where.empty() ? "" : " (" + error.where + ")");
+}
+
+Status judge_render(const BatchPlan& plan, const PlannedPicture& planned, const Bytes& exr,
+                    const std::filesystem::path& folder, PictureResult& result) {
+  try {
+    return judge(plan, planned, exr, folder, result);
+  } catch (const std::bad_alloc&) {  // of one that is too large; the other pictures have room
+    result.state = PictureState::kFailed;
+    result.failure = "internal: out of memory";
+    return success();
+  }
 }
 
 }  // namespace raykiln::server

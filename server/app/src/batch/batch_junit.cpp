@@ -1,3 +1,4 @@
+#include "../one_line.hpp"
 #include "../text_format.hpp"
 #include "batch_result.hpp"
 #include "xml_text.hpp"
@@ -8,6 +9,9 @@ namespace {
 std::string attribute(const char* name, const std::string& value) {
   return std::string(" ").append(name).append("=\"").append(xml_text(value)).append("\"");
 }
+
+/// GitLab takes reports of 30 MB: a thousand pictures stay far below.
+std::string message(const PictureResult& r) { return cut_to(verdict_line(r), 4096); }
 
 std::string figures(const PictureResult& r) {
   std::string text;
@@ -28,14 +32,14 @@ std::string testcase(const BatchResult& result, std::size_t index) {
   std::string text = "    <testcase" + attribute("classname", result.plan.name) +
                      attribute("name", result.plan.pictures[index].name) + attribute("time", json_number(r.seconds)) + ">\n";
   const auto child = [&](const char* tag, const char* type) {
-    text.append("      <").append(tag).append(attribute("type", type)).append(attribute("message", verdict_line(r))).append("/>\n");
+    text.append("      <").append(tag).append(attribute("type", type)).append(attribute("message", message(r))).append("/>\n");
   };
   switch (outcome(r)) {
     case ExitCode::kJobFailed: child("error", "failed"); break;
     case ExitCode::kImageDiffers: child("failure", "differs"); break;
     case ExitCode::kLimitReached: child("failure", "limit_reached"); break;
     case ExitCode::kOk: break;
-    default: text.append("      <skipped").append(attribute("message", verdict_line(r))).append("/>\n");
+    default: text.append("      <skipped").append(attribute("message", message(r))).append("/>\n");
   }
   text.append("      <system-out>").append(xml_text(figures(r))).append("</system-out>\n");
   return text.append("    </testcase>\n");

@@ -64,6 +64,9 @@ std::string text(const Value& map, std::string_view key, const std::string& fall
   return value->text;
 }
 
+constexpr std::size_t kMostPatternBytes = 4096;   ///< as long as a path may be
+constexpr std::size_t kMostSettingsBytes = 4096;  ///< of one picture, as JSON
+
 const std::vector<Value>& list(const Value& map, std::string_view key) {
   static const std::vector<Value> kNone;
   const Value* value = map.find(key);
@@ -107,6 +110,9 @@ class Planner {
     only(file_, "the batch", {"name", "priority", "max_active", "reuse", "fail_fast", "false_alarms", "tolerance",
                               "thresholds", "defaults", "reference", "scenes"});
     plan_.name = text(file_, "name", "batch");
+    if (plan_.name.size() > limits_.max_name_bytes) {
+      wrong(file_, "name must have at most " + std::to_string(limits_.max_name_bytes) + " bytes");
+    }
     plan_.priority = integer(file_, "priority", 1, limits_.max_priority, plan_.priority);
     plan_.max_active = integer(file_, "max_active", 1, kMostActiveItems, plan_.max_active);
     plan_.reuse = flag(file_, "reuse", plan_.reuse);
@@ -179,6 +185,7 @@ class Planner {
     if (plan_.pictures.size() >= kMostItems) wrong(scene, "more than " + std::to_string(kMostItems) + " pictures");
     PlannedPicture picture{.name = name, .scene = path, .reference = {}, .request = request(name, camera, setting)};
     const std::string pattern = text(scene, "reference", text(file_, "reference", ""));
+    if (pattern.size() > kMostPatternBytes) wrong(scene, "reference is longer than " + std::to_string(kMostPatternBytes));
     if (!pattern.empty()) {
       picture.reference = (folder_ / filled(pattern, {{"{name}", name},
                                                       {"{scene}", file_name_text(label)},
@@ -196,6 +203,9 @@ class Planner {
     if (const Value* defaults = file_.find("defaults")) {
       if (defaults->kind != Value::Kind::kMap) wrong(*defaults, "defaults must be a map of fields");
       whole = *defaults;
+    }
+    if (to_json(whole).size() + to_json(setting).size() > kMostSettingsBytes) {
+      wrong(setting, "the settings of a picture must have at most " + std::to_string(kMostSettingsBytes) + " bytes");
     }
     for (const auto& [key, value] : setting.map) {
       if (key != "name") whole.set(key, value);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "../one_line.hpp"
+
 namespace raykiln::server {
 namespace {
-
-constexpr std::size_t kMostBars = 8;
 
 std::string bar(double fraction) {
   constexpr std::size_t kWidth = 24;
@@ -26,7 +26,7 @@ void BatchProgress::show(std::size_t done, std::size_t total, const std::vector<
   double whole = static_cast<double>(done);
   for (const RunningPicture& picture : running) {
     whole += std::clamp(picture.state.fraction, 0.0, 1.0);
-    if (lines_ >= kMostBars) continue;
+    if (lines_ >= kMostBatchBars) continue;
     out_ << picture.name.substr(0, 24) << ' ' << progress_text(picture.state, 24) << '\n';
     ++lines_;
   }
@@ -38,7 +38,7 @@ void BatchProgress::show(std::size_t done, std::size_t total, const std::vector<
 void BatchProgress::ended(const std::string& name, const std::string& line) {
   if (quiet_) return;
   if (terminal_) clear();
-  out_ << name << ": " << line << std::endl;
+  out_ << name << ": " << one_line(line) << std::endl;
 }
 
 void BatchProgress::finish() {

@@ -9,6 +9,8 @@
 
 namespace raykiln::server {
 
+inline constexpr std::size_t kMostBatchBars = 8;
+
 struct RunningPicture {
   std::string name;
   ProgressState state;
@@ -19,7 +21,7 @@ class BatchProgress {
  public:
   BatchProgress(std::ostream& out, bool terminal, bool quiet) : out_(out), terminal_(terminal), quiet_(quiet) {}
 
-  /// Terminal: redraws one bar for each of the first 8 running pictures and one for all.
+  /// Terminal: redraws one bar for each of the first kMostBatchBars running pictures and one for all.
   void show(std::size_t done, std::size_t total, const std::vector<RunningPicture>& running);
   /// A picture has ended; `line` says how.
   void ended(const std::string& name, const std::string& line);

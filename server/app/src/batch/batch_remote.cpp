@@ -21,8 +21,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr auto kFirstPoll = milliseconds(10), kLastPoll = milliseconds(250);
-constexpr auto kPatience = std::chrono::seconds(60);  ///< with a server that does not answer
-constexpr std::size_t kMostBars = 8;
+constexpr auto kFirstRetry = milliseconds(100), kLastRetry = milliseconds(2000);
 
 class RemoteBatch {
  public:
@@ -43,6 +42,7 @@ class RemoteBatch {
 
   ExitCode go(bool& waited) {
     result_.batch = wanted_.resume;
+    if (!wanted_.resume.empty()) block_stop_signals();
     if (wanted_.resume.empty() && (!scenes_.upload(remote_) || !submit())) return remote_.failure();
     if (wanted_.rerun && !remote_.ask("POST", path() + "/rerun")) return remote_.failure();
     if (!is_to_be_waited_for()) {
@@ -51,7 +51,6 @@ class RemoteBatch {
       return ExitCode::kOk;
     }
     if (result_.batch.empty()) return ExitCode::kOk;  // no picture could be sent
-    block_stop_signals();  // waited for from here on; what renders is the server's
     if (!run_.quiet) std::cerr << "batch " << result_.batch << " at " << result_.server << "/batches/" << result_.batch << std::endl;
     const ExitCode followed = follow();
     progress_.finish();
@@ -82,6 +81,7 @@ class RemoteBatch {
     }
     ClientHeaders headers{{"Content-Type", "application/json"}};
     if (!run_.options.idempotency_key.empty()) headers.emplace_back("Idempotency-Key", run_.options.idempotency_key);
+    block_stop_signals();  // waited for from here on: what the server has begun is never left without its id
     const auto answer = remote_.ask("POST", "/v1/batches", headers, batch_request_json(batch));
     const auto view = answer ? parse_batch_view(answer->body) : std::nullopt;
     if (answer && !view) remote_.fail(ExitCode::kFailure, "the server's answer is no batch");
@@ -96,32 +96,51 @@ class RemoteBatch {
   }
 
   ExitCode follow() {
-    const auto begun = steady_clock::now();
-    auto heard = begun;
+    begun_ = steady_clock::now();
     auto pause = kFirstPoll;
     bool cancelling = false;
     while (true) {
-      auto answer = HttpClient(remote_.address()).request("GET", path());
-      if (answer && answer->status != 503) {
-        heard = steady_clock::now();
+      auto answer = insist("GET", path());
+      if (end_ == WaitEnd::kNone) {
         const auto checked = remote_.check(std::move(answer));
         if (!checked) return remote_.failure();
         const auto view = parse_batch_view(checked->body);
         if (!view) return remote_.fail(ExitCode::kFailure, "the server's answer is no batch");
         if (const ExitCode taken = take(*view); taken != ExitCode::kOk) return taken;
-        if (view->state != "running") return ExitCode::kOk;
-      } else if (steady_clock::now() - heard > kPatience) {
-        progress_.finish();
-        return remote_.fail(ExitCode::kNoServer, "the server does not answer; batch " + result_.batch + " goes on when it is back");
+        if (end_ == WaitEnd::kNone && view->state != "running") return ExitCode::kOk;
       }
-      if (stop_signal_within(pause)) {
-        if (!wanted_.cancel_on_interrupt || cancelling) return detach("detached");
-        cancelling = true;
-        if (!remote_.ask("POST", path() + "/cancel")) return remote_.failure();
+      if (end_ == WaitEnd::kNone && !rest(pause)) pause = std::min(kLastPoll, pause * 3 / 2);
+      if (end_ == WaitEnd::kTime) return detach("the time to wait is over");
+      if (end_ == WaitEnd::kNone) continue;
+      if (!wanted_.cancel_on_interrupt || cancelling) return detach("detached");
+      cancelling = true;
+      end_ = WaitEnd::kNone;
+      if (!remote_.check(insist("POST", path() + "/cancel")) && end_ == WaitEnd::kNone) return remote_.failure();
+    }
+  }
+
+  /// Waits so long; true, and `end_` says why, when that is the end of waiting.
+  bool rest(milliseconds time) {
+    if (stop_signal_within(time)) end_ = WaitEnd::kSignal;
+    const double waited = std::chrono::duration<double>(steady_clock::now() - begun_).count();
+    if (end_ == WaitEnd::kNone && wanted_.timeout_seconds > 0.0 && waited > wanted_.timeout_seconds) end_ = WaitEnd::kTime;
+    return end_ != WaitEnd::kNone;
+  }
+
+  /// Asks a server that may be starting again, or stopping, until it answers, the wait ends, or patience does: then
+  /// the failure is "no_server".
+  Result<ClientResponse> insist(const std::string& method, const std::string& target) {
+    const auto patience = std::chrono::duration<double>(wanted_.patience_seconds);
+    const auto asked = steady_clock::now();
+    for (auto pause = kFirstRetry;; pause = std::min(kLastRetry, 2 * pause)) {
+      auto answer = HttpClient(remote_.address()).request(method, target);
+      if (answer && answer->status != 503) return answer;
+      if (rest(std::chrono::milliseconds(0)) || steady_clock::now() - asked >= patience || rest(pause)) {
+        if (end_ == WaitEnd::kNone) progress_.finish();
+        return Error{ErrorKind::kUnavailable, "no_server",
+                     "batch " + result_.batch + " goes on when the server is back; wait for it again with --resume",
+                     result_.server};
       }
-      pause = std::min(kLastPoll, pause * 3 / 2);
-      const double waited = std::chrono::duration<double>(steady_clock::now() - begun).count();
-      if (wanted_.timeout_seconds > 0.0 && waited > wanted_.timeout_seconds) return detach("the time to wait is over");
     }
   }
 
@@ -142,8 +161,8 @@ class RemoteBatch {
       if (found == by_name_.end() || item.state == "waiting") continue;
       if (result_.pictures[found->second].state != PictureState::kWaiting) continue;
       if (item.state == "active") {
-        running.push_back({item.name, progress_of_job(running.size() < kMostBars ? item.job : "")});
-      } else if (const ExitCode ended = take_ended(found->second, item); ended != ExitCode::kOk) {
+        running.push_back({item.name, progress_of_job(running.size() < kMostBatchBars ? item.job : "")});
+      } else if (const ExitCode ended = take_ended(found->second, item); ended != ExitCode::kOk || end_ != WaitEnd::kNone) {
         return ended;
       }
     }
@@ -166,14 +185,15 @@ class RemoteBatch {
       const std::string refusal = scenes_.refusal(picture.scene);
       fail(picture, refusal.empty() ? item.error : refusal);
     }
-    tell(index);
+    if (picture.state != PictureState::kWaiting) tell(index);  // it is so still where the wait has ended
     return ExitCode::kOk;
   }
 
-  /// An answer that the picture alone has to do with, or nothing: then the reason is in `picture`, or `remote_` has
+  /// An answer about the picture, or nothing: then the reason is in `picture`, the wait has ended, or `remote_` has
   /// failed and with it the batch.
   std::optional<ClientResponse> ask_for(PictureResult& picture, const std::string& target) {
-    auto answer = HttpClient(remote_.address()).request("GET", target);
+    auto answer = insist("GET", target);
+    if (end_ != WaitEnd::kNone) return std::nullopt;
     if (answer && (answer->status == 404 || answer->status == 500)) {
       fail(picture, problem_text(answer->body));
       return std::nullopt;
@@ -189,14 +209,17 @@ class RemoteBatch {
     if (!about) return remote_.failure();
     const auto view = parse_job_view(about->body);
     if (!view) return remote_.fail(ExitCode::kFailure, "the server's answer is no job");
-    picture.state = PictureState::kCompleted;
     picture.seconds = picture.reused ? 0.0 : view->render_seconds;
     picture.samples = view->samples_done;
     picture.error_reached = view->error_reached;
     picture.limit_reached = planned.request.stop.error && !view->target_reached;
-    if (planned.reference.empty() && wanted_.html.empty()) return ExitCode::kOk;
+    if (planned.reference.empty() && wanted_.html.empty()) {
+      picture.state = PictureState::kCompleted;
+      return ExitCode::kOk;
+    }
     const auto exr = ask_for(picture, job + "/image?format=exr");
     if (!exr) return remote_.failure();
+    picture.state = PictureState::kCompleted;
     const auto judged = judge_render(result_.plan, planned, {exr->body.begin(), exr->body.end()}, run_.folder, picture);
     return judged ? ExitCode::kOk : remote_.fail(ExitCode::kFailure, judged.error().message);
   }
@@ -223,6 +246,8 @@ class RemoteBatch {
   const BatchOptions& wanted_;
   BatchResult& result_;
   Remote remote_;
+  enum class WaitEnd { kNone, kSignal, kTime } end_ = WaitEnd::kNone;
+  steady_clock::time_point begun_{};
   const bool terminal_;
   BatchProgress progress_;
   BatchScenes scenes_;

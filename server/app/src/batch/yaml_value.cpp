@@ -1,7 +1,9 @@
 // The one place that uses yaml-cpp.
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <optional>
+#include <set>
 
 #include "value.hpp"
 
@@ -32,17 +34,19 @@ class Converter {
       for (const auto& item : node) value.list.push_back(convert(item, level + 1));
     } else if (node.IsMap()) {
       value.kind = Value::Kind::kMap;
-      for (const auto& entry : node) add(value, entry.first, entry.second, level);
+      std::set<std::string> keys;
+      for (const auto& entry : node) add(value, keys, entry.first, entry.second, level);
     }
     return value;
   }
   [[nodiscard]] const std::optional<Error>& fault() const { return fault_; }
 
  private:
-  void add(Value& map, const YAML::Node& key, const YAML::Node& item, int level) {
+  void add(Value& map, std::set<std::string>& keys, const YAML::Node& key, const YAML::Node& item, int level) {
+    if (fault_) return;
     if (!key.IsScalar()) return fail("a key must be text", key.Mark().line + 1);
     if (!has_room(key, key.Mark().line + 1)) return;
-    if (map.find(key.Scalar()) != nullptr) {
+    if (!keys.insert(key.Scalar()).second) {
       return fail("the key \"" + key.Scalar() + "\" is there twice", key.Mark().line + 1);
     }
     map.map.emplace_back(key.Scalar(), convert(item, level + 1));
@@ -64,12 +68,22 @@ class Converter {
   std::optional<Error> fault_;
 };
 
+/// The parser builds nodes, each of some hundred bytes, before anyone can count them; there are no more than marks.
+bool may_have_too_many_nodes(std::string_view text, const DocumentBounds& bounds) {
+  const auto marks = std::count_if(text.begin(), text.end(), [](char c) {
+    return c == ',' || c == ':' || c == '[' || c == '{' || c == '-' || c == '?' || c == '*';
+  });
+  constexpr int kMarksANode = 4;
+  return marks > kMarksANode * std::ptrdiff_t{bounds.nodes};
+}
+
 }  // namespace
 
 Result<Value> parse_yaml(std::string_view text, const DocumentBounds& bounds) {
   if (text.size() > bounds.bytes) {
     return invalid("the file is larger than " + std::to_string(bounds.bytes >> 20U) + " MiB", 0);
   }
+  if (may_have_too_many_nodes(text, bounds)) return invalid("the file is too deep or too large", 0);
   try {
     Converter converter(bounds);
     Value value = converter.convert(YAML::Load(std::string(text)), 0);

@@ -15,6 +15,7 @@ struct DaemonOptions {
   std::vector<std::string> allowed_hosts;  ///< names beside localhost and IP addresses
   std::filesystem::path web_directory;     ///< empty: the embedded page
   std::filesystem::path ready_file;        ///< empty: none; gets the URL when the daemon is ready
+  std::size_t max_batch_watchers = 64;     ///< event streams of batches at once
   LogLevel log_level = LogLevel::kInfo;
 };
 
