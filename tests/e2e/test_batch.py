@@ -1,6 +1,7 @@
 """raykiln compare, batch and approve: verdicts, reports and exit codes."""
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -13,6 +14,7 @@ import yaml
 from support import scenes
 from support.daemon import ROOT, SLOW
 from support.junit import read_junit
+from support.proxy import Proxy
 from test_cli import PROGRAM, raykiln
 from test_reuse import counter
 
@@ -252,6 +254,39 @@ def test_a_server_that_is_not_there(gallery, tmp_path):
     path = plan(copy(gallery, tmp_path), ("one",))
     done = raykiln("batch", path, "--wait", "--server", "http://127.0.0.1:9")
     assert done.returncode == 6, done.stderr
+
+
+def test_a_server_that_comes_back_is_asked_again(gallery, tmp_path, api):
+    """Connections that are lost and 503 while results are fetched: the batch goes on as if nothing had been."""
+    folder, faults = copy(gallery, tmp_path), ["drop", 503, "drop"]
+
+    def fault(method, target):
+        if method == "GET" and ("/image" in target or target.startswith("/v1/jobs/")) and faults:
+            return faults.pop(0)
+        return None
+
+    with Proxy(api.daemon.port, fault) as proxy:
+        done, report = run(plan(folder, ("one", "two"), defaults=OTHER_SEED), "--server", proxy.url)
+    assert done.returncode == 0 and not faults, done.stderr
+    assert verdicts(report) == {"one": "same", "two": "same"}
+
+
+@pytest.mark.skipif(os.environ.get("RAYKILN_LONG") != "1", reason="RAYKILN_LONG=1: patience takes a minute")
+def test_a_server_that_stays_away_has_a_code_of_its_own(gallery, tmp_path, api):
+    path = plan(copy(gallery, tmp_path), ("one", "two"), defaults=OTHER_SEED)
+    gone = []
+
+    def fault(method, target):
+        if "/image" in target or gone:
+            gone.append(target)
+            return "drop" if len(gone) % 2 else 503
+        return None
+
+    with Proxy(api.daemon.port, fault) as proxy:
+        begun = time.monotonic()
+        done = raykiln("batch", path, "--server", proxy.url, "--junit", tmp_path / "junit.xml", "--html", tmp_path / "report")
+    assert done.returncode == 6 and 60 < time.monotonic() - begun < 120 + 60 * SLOW, done.stderr
+    assert "--resume" in done.stderr and "b_" in done.stderr and 10 <= len(gone) < 60, (done.stderr, gone)
 
 
 def test_progress_without_a_terminal_is_plain_lines(gallery, tmp_path, where):

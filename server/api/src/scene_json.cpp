@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "effects_json.hpp"
+#include "problem_value.hpp"
 #include "raykiln/api/job_json.hpp"
 
 namespace raykiln::server {

@@ -196,9 +196,6 @@ void add_batch(CLI::App& app, CliOptions& options) {
   auto* local = batch->add_flag("--local", wanted.local, "in this process, without a server");
   batch->add_flag("--wait", options.wait, "follow to the end, and judge (implied by --junit, --report, --html)");
   batch->add_option("--timeout", wanted.timeout_seconds, "seconds to wait at most; the batch goes on")->check(CLI::Range(0.0, 1e7));
-  batch->add_option("--patience", wanted.patience_seconds, "seconds to go on asking a server that does not answer, once the batch is there")
-      ->check(CLI::Range(0.0, 1e7))
-      ->capture_default_str();
   batch->add_flag("--cancel-on-interrupt", wanted.cancel_on_interrupt, "Ctrl-C cancels the batch instead of detaching from it");
   batch->add_flag("--no-reuse", wanted.no_reuse, "render what the server has rendered before, too");
   auto* resume = batch->add_option("--resume", wanted.resume, "id of this file's batch, to wait for it again")->excludes(local);

@@ -21,6 +21,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr auto kFirstPoll = milliseconds(10), kLastPoll = milliseconds(250);
+constexpr auto kPatience = std::chrono::seconds(60);  ///< with a server that does not answer
 constexpr auto kFirstRetry = milliseconds(100), kLastRetry = milliseconds(2000);
 
 class RemoteBatch {
@@ -130,12 +131,11 @@ class RemoteBatch {
   /// Asks a server that may be starting again, or stopping, until it answers, the wait ends, or patience does: then
   /// the failure is "no_server".
   Result<ClientResponse> insist(const std::string& method, const std::string& target) {
-    const auto patience = std::chrono::duration<double>(wanted_.patience_seconds);
     const auto asked = steady_clock::now();
     for (auto pause = kFirstRetry;; pause = std::min(kLastRetry, 2 * pause)) {
       auto answer = HttpClient(remote_.address()).request(method, target);
       if (answer && answer->status != 503) return answer;
-      if (rest(std::chrono::milliseconds(0)) || steady_clock::now() - asked >= patience || rest(pause)) {
+      if (rest(std::chrono::milliseconds(0)) || steady_clock::now() - asked >= kPatience || rest(pause)) {
         if (end_ == WaitEnd::kNone) progress_.finish();
         return Error{ErrorKind::kUnavailable, "no_server",
                      "batch " + result_.batch + " goes on when the server is back; wait for it again with --resume",

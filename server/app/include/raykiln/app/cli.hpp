@@ -45,7 +45,6 @@ struct BatchOptions {
   bool rerun = false;                 ///< of `resume`: what failed
   bool cancel_on_interrupt = false;
   double timeout_seconds = 0.0;       ///< of waiting; 0: none
-  double patience_seconds = 60.0;     ///< with a server that does not answer
 };
 
 /// What `approve` makes references of.
