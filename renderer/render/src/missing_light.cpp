@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "raykiln/scene/environment_map.hpp"
 #include "tracing.hpp"
 
 namespace raykiln::render {
@@ -15,6 +16,7 @@ constexpr double kMostProbes = 1024.0, kMostRays = 1e5;
 constexpr std::uint64_t kLeastProbes = 16;
 constexpr double kWorthSaying = 1e-3;  ///< of the picture's light
 constexpr double kCertain = 3.0;       ///< standard errors
+constexpr double kTold = 2.0;          ///< standard errors beyond which a size is told as one
 constexpr double kRuleOfThree = 3.0;   ///< 0 events in n trials bound the rate by 3/n at 95 %
 
 /// Pairs between two looks at what has been spent, and the most: steps and blocks of the tree, which
@@ -106,11 +108,17 @@ std::string percent(double share) {
 
 double brightest_emitter(const Scene& scene) {
   float largest = 0.0F;
+  if (scene.environment) largest = *std::max_element(scene.environment->rgb.begin(), scene.environment->rgb.end());
   for (const std::uint32_t id : scene.mesh.material_ids) {
     const Rgb& e = scene.materials[id].emission;
     largest = std::max({largest, e.x, e.y, e.z});
   }
   return static_cast<double>(largest);
+}
+
+/// Are emitters and the environment looked for by shadow rays?
+bool samples_emitters(const RenderSettings& settings) {
+  return settings.emitter_sampling && !settings.effects.without.contains(Effect::kEmitterSampling);
 }
 
 /// Each is a shadow ray at every vertex.
@@ -142,11 +150,13 @@ MissingLight cut_off_light(const PreparedScene& scene, const RenderSettings& set
 
 MissingLight unseen_light(const PreparedScene& scene, const RenderSettings& settings,
                           std::uint64_t probes) {
-  if (settings.emitter_sampling || !scene.emitters().has_triangles()) return {};
+  const bool nothing_to_find = !scene.emitters().has_triangles() && scene.emitters().environment() == nullptr;
+  if (samples_emitters(settings) || nothing_to_find) return {};
   RenderSettings alone = settings;
   alone.branches = 1;
   RenderSettings whole = alone;
   whole.emitter_sampling = true;
+  whole.effects.without.erase(Effect::kEmitterSampling);
   return compare(scene, alone, whole, probes);
 }
 
@@ -155,11 +165,16 @@ std::vector<RenderNotice> missing_light_notices(const PreparedScene& scene,
   std::vector<RenderNotice> notices;
   const std::uint64_t probes = affordable_probes(scene, settings);
   const MissingLight cut = cut_off_light(scene, settings, probes);
-  if (cut.differing > 0 && cut.share() + 2.0 * cut.share_error() >= kWorthSaying) {
-    notices.push_back({"truncated_paths", "paths end after " + std::to_string(path_limit(settings)) +
-                                              " reflections: " + percent(std::max(0.0, cut.share())) + " +- " +
-                                              percent(cut.share_error()) +
-                                              " of the picture's light is missing, however many samples there are"});
+  if (cut.differing > 0 && cut.share() + kTold * cut.share_error() >= kWorthSaying) {
+    std::string told = "paths end after ";
+    told.append(std::to_string(path_limit(settings))).append(" reflections: ");
+    if (cut.missing > kTold * cut.standard_error) {
+      told.append(percent(cut.share())).append(" +- ").append(percent(cut.share_error()));
+    } else {  // too few probes to tell it from noise: a bound, no figure
+      told.append("up to ").append(percent(std::max(0.0, cut.share()) + kTold * cut.share_error()));
+    }
+    told.append(" of the picture's light is missing, however many samples there are");
+    notices.push_back({"truncated_paths", std::move(told)});
   }
   const MissingLight unseen = unseen_light(scene, settings, probes);
   if (unseen.probes > 0 && unseen.missing > kCertain * unseen.standard_error) {

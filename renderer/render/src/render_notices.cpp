@@ -40,11 +40,11 @@ double lobe_solid_angle(const Material& m) {
   return is_black(m.specular) ? HUGE_VAL : 2.0 * kPi / (m.specular_exp + 1.0);
 }
 
-// A lobe of exponent e fills the solid angle 2 pi / (e + 1); the mirror image of a point light is no
+// A lobe of exponent e fills the solid angle 2 pi / (e + 1); the mirror image of a light without a surface is no
 // larger. Emitting triangles are found by the path's own rays and do not count.
 std::size_t unresolved_mirrors(const RenderSettings& settings, const Scene& scene) {
   const SceneUse use = use_of(scene);
-  if (use.shining_point_lights == 0) return 0;
+  if (use.lights_without_surface() == 0) return 0;
   const Camera& camera = settings.own_camera
                              ? *settings.own_camera
                              : scene.cameras[static_cast<std::size_t>(settings.camera)];
@@ -70,7 +70,7 @@ std::vector<RenderNotice> render_notices(const RenderSettings& settings, const S
   if (const std::size_t mirrors = unresolved_mirrors(settings, scene); mirrors > 0) {
     notices.push_back({"unresolved_sharp_highlight",
                        "unresolved sharp highlight: " + std::to_string(mirrors) +
-                           " materials mirror point lights in less than 1/16 of a pixel; samples seldom "
+                           " materials mirror lights without a surface in less than 1/16 of a pixel; samples seldom "
                            "find these highlights, so light may be missing where no noise is seen"});
   }
   return notices;

@@ -1,6 +1,7 @@
 // Pictures lit by an environment map: against the constant background and closed forms.
 #include <gtest/gtest.h>
 
+#include "raykiln/render/missing_light.hpp"
 #include "raykiln/sampling/warp.hpp"
 #include "raykiln/scene/environment_map.hpp"
 #include "support/scene_pieces.hpp"
@@ -171,6 +172,28 @@ TEST(Environment, BranchesAgree) {
     e.push_back(support::estimate(support::render_all(*b.prepare(), settings, 64)));
   }
   EXPECT_NEAR(e[0].mean.y, e[1].mean.y, 4.0 * std::hypot(e[0].standard_error, e[1].standard_error));
+}
+
+TEST(Environment, ThatPathsSeldomFindIsAnnounced) {
+  EnvironmentMap map{.name = "", .width = 512, .height = 256, .rgb = {}, .rotation_rad = 0.0};
+  map.rgb.assign(3 * 512 * 256, 0.0F);
+  std::fill_n(map.rgb.begin() + 3 * (512 * 60 + 100), 3, 1e5F);  // 1e-4 sr over the horizon
+  support::SceneBuilder b;
+  b.triangle({-9, 0, 9}, {9, 0, 9}, {0, 0, -9}, b.material(support::diffuse_material(Rgb(0.5F))));
+  b.camera({0, 2, 0.01}, {0, 0, 0}, {0, 1, 0}, 0.6);
+  b.scene().environment = std::make_shared<const EnvironmentMap>(std::move(map));
+  const auto scene = b.prepare();
+  RenderSettings settings;
+  settings.width = settings.height = 8;
+  settings.max_depth = 2;
+  EXPECT_EQ(unseen_light(*scene, settings, 1024).probes, 0U);
+  settings.effects.without.insert(Effect::kEmitterSampling);
+  EXPECT_GT(unseen_light(*scene, settings, 1024).share(), 0.5);
+  settings.effects = {};
+  settings.emitter_sampling = false;
+  const auto notices = missing_light_notices(*scene, settings);
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_EQ(notices[0].code, "unseen_light");
 }
 
 }  // namespace

@@ -106,6 +106,15 @@ TEST(Notices, NameATreeWithoutBenefit) {
   EXPECT_EQ(notices[0].code, "unresolved_sharp_highlight");
   room.point_lights.clear();
   EXPECT_TRUE(render_notices({}, room, build_stats(*tree)).empty());
+  DirectionalLight sun;
+  sun.irradiance = Rgb(1.0F);
+  room.directional_lights = {sun};
+  EXPECT_EQ(render_notices({}, room, build_stats(*tree)).size(), 1U);
+  room.directional_lights.clear();
+  SpotLight spot;
+  spot.intensity = Rgb(1.0F);
+  room.spot_lights = {spot};
+  EXPECT_EQ(render_notices({}, room, build_stats(*tree)).size(), 1U);
 }
 
 }  // namespace

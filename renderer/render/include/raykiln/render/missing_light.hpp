@@ -28,7 +28,7 @@ struct MissingLight {
 [[nodiscard]] MissingLight cut_off_light(const PreparedScene& scene, const RenderSettings& settings,
                                          std::uint64_t probes);
 
-/// Light of emitters that paths seldom find by themselves, where a picture is to do without emitter
+/// Light of emitters and of the environment that paths seldom find by themselves, where a picture is to do without emitter
 /// sampling: the other sample has it. Its mean is the same; what is missing is what so few samples have
 /// not found.
 [[nodiscard]] MissingLight unseen_light(const PreparedScene& scene, const RenderSettings& settings,

@@ -76,7 +76,7 @@ struct LightModelWarning {
 [[nodiscard]] EffectPlan effect_plan(const RenderSettings& settings, const Scene& scene);
 
 /// What is worth knowing beside a picture: "tree_no_benefit" where no split of the tree pays, and
-/// "unresolved_sharp_highlight" where mirrors show point lights smaller than samples can find.
+/// "unresolved_sharp_highlight" where mirrors show point lights, spots or suns smaller than samples can find.
 /// Precondition: settings_error() is nothing.
 struct RenderNotice {
   std::string code;
