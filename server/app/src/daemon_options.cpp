@@ -69,6 +69,11 @@ ParsedDaemon parse_daemon_options(int argc, const char* const* argv) {
   app.add_option("--max-active", config.scheduler.max_active_jobs, "jobs that run at once")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  app.add_option("--look-share", config.scheduler.look_share,
+                 "part of the render time that may go into judging the error of running pictures; "
+                 "0: only at error targets and in the end")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   app.add_option("--max-connections", config.http.max_connections)
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

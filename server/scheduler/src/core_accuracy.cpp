@@ -8,8 +8,6 @@
 namespace raykiln::server {
 namespace {
 
-/// Judging costs at most this part of the time between two looks.
-constexpr double kShareOfTime = 0.005;
 /// Looks follow at least so far apart, as a ratio of render seconds.
 constexpr double kStep = 1.1;
 /// Larger films are judged at decisions and in the end only: a look copies the film.
@@ -114,7 +112,7 @@ void Scheduler::Core::finish(LiveJob& job, DoneBy by) {
 
 void Scheduler::Core::measure_if_due(LiveJob& job) {
   JobSnapshot& s = job.snapshot;
-  if (!job.plan || job.ending || !job.new_samples) return;
+  if (!(config_.scheduler.look_share > 0.0) || !job.plan || job.ending || !job.new_samples) return;
   refresh(job);
   const double now = s.statistics.render_seconds;
   const bool whole = s.progress.tiles_started == s.progress.tiles && s.progress.samples_per_pixel >= 2.0;
@@ -146,7 +144,7 @@ void Scheduler::Core::measured(const JobId& id, const PictureError& error, doubl
   JobSnapshot& s = job->snapshot;
   job->measuring = false;
   s.statistics.accuracy_seconds += cost;
-  job->measure_at = std::max(kStep * then.render_seconds, then.render_seconds + cost / kShareOfTime);
+  job->measure_at = std::max(kStep * then.render_seconds, then.render_seconds + cost / config_.scheduler.look_share);
   const bool newer = s.curve.empty() || then.render_seconds > s.curve.back().render_seconds;
   if (job->ending || !newer) return;
   note_error(*job, error, then);

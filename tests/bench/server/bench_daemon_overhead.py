@@ -32,13 +32,13 @@ PROMISE = 0.02
 
 
 class Daemon:
-    def __init__(self, programs, workers):
+    def __init__(self, programs, workers, *more):
         self.folder = tempfile.TemporaryDirectory(prefix="raykiln-bench-")
         ready = Path(self.folder.name) / "ready"
         log = open(Path(self.folder.name) / "log", "wb")
         self.process = subprocess.Popen(
             [str(programs / "raykilnd"), "--listen", "127.0.0.1:0", "--workers", str(workers),
-             "--store", str(Path(self.folder.name) / "store"), "--ready-file", str(ready)],
+             "--store", str(Path(self.folder.name) / "store"), "--ready-file", str(ready), *more],
             stdin=subprocess.DEVNULL, stdout=log, stderr=log)
         deadline = time.monotonic() + 20
         while not ready.exists():

@@ -34,6 +34,8 @@ TEST(DaemonOptions, RefusesNonsense) {
     EXPECT_EQ(daemon({"--listen", text}).exit_code, 2) << text;
   }
   EXPECT_EQ(daemon({"--unknown"}).exit_code, 2);
+  EXPECT_EQ(daemon({"--look-share", "1.5"}).exit_code, 2);
+  EXPECT_EQ(daemon({"--look-share", "0"}).options.config.scheduler.look_share, 0.0);
   EXPECT_EQ(daemon({"--cache-bytes", "512MB"}).options.config.workers.scene_cache_bytes, 512U << 20U);
 }
 

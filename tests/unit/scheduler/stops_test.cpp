@@ -16,9 +16,10 @@ struct Ended {
   std::vector<float> rgb;
 };
 
-Ended run(int threads, const std::function<void(JobRequest&)>& change, int judged_at_once_px = 65'536) {
+Ended run(int threads, const std::function<void(JobRequest&)>& change, int judged_at_once_px = 65'536,
+          Config config = {}) {
   const TempDirectory directory;
-  ServerRig rig(directory.path(), threads);
+  ServerRig rig(directory.path(), threads, {}, std::move(config));
   rig.scheduler.reset();
   rig.judged_at_once_px = judged_at_once_px;
   rig.start();
@@ -114,6 +115,18 @@ TEST(Stops, EveryJobKnowsItsError) {
   ASSERT_FALSE(ended.job.curve.empty());
   EXPECT_EQ(ended.job.curve.back().samples, 64.0);
   EXPECT_EQ(ended.job.curve.back().rays, ended.job.statistics.rays());
+}
+
+TEST(Stops, WithoutLooksTheErrorIsJudgedInTheEndAlone) {
+  const auto many_samples = [](JobRequest& r) { r.stop.samples = 512; };
+  Config blind;
+  blind.scheduler.look_share = 0.0;
+  const Ended ended = run(2, many_samples, 65'536, blind), usual = run(2, many_samples);
+  EXPECT_EQ(ended.job.curve.size(), 1U);
+  EXPECT_GT(usual.job.curve.size(), 1U);
+  ASSERT_TRUE(ended.job.accuracy);
+  EXPECT_EQ(ended.job.accuracy->error.value, usual.job.accuracy->error.value);
+  EXPECT_EQ(ended.rgb, usual.rgb);
 }
 
 }  // namespace
