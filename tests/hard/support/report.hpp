@@ -13,6 +13,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/sanitized.hpp"
+
 namespace raykiln::hard {
 
 /// True in the long run (tests/run --full).
@@ -21,18 +23,11 @@ inline bool long_run() {
   return value != nullptr && std::string_view(value) == "1";
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
-
 /// Trials of a "never" claim: `commit` as a rule, `full` in the long run. 0 events in n trials
-/// bound the rate by 3/n at 95 %. Under a sanitizer, which looks for faults and not for rates and takes
-/// ten times as long, a sixteenth of many.
+/// bound the rate by 3/n at 95 %. Under a sanitizer a sixteenth of many.
 inline std::uint64_t trials(std::uint64_t commit, std::uint64_t full) {
   constexpr std::uint64_t kFew = 1000;
-  if (kSanitized) return commit <= kFew ? commit : std::max(kFew, commit / 16);
+  if (tests::kSanitized) return commit <= kFew ? commit : std::max(kFew, commit / 16);
   return long_run() ? full : commit;
 }
 

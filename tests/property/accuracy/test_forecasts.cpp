@@ -12,6 +12,7 @@
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/accuracy/true_error.hpp"
 #include "raykiln/jobs/forecast.hpp"
+#include "support/sanitized.hpp"
 #include "support/small_rooms.hpp"
 
 namespace raykiln::render {
@@ -82,7 +83,7 @@ class Rooms : public ::testing::TestWithParam<Room> {};
 
 TEST_P(Rooms, ForecastsHold) {
   if (!GetParam().ordinary && !long_run()) GTEST_SKIP() << "RAYKILN_LONG=1";
-  const int seeds = long_run() ? 12 : 6;
+  const int seeds = tests::kSanitized ? 2 : long_run() ? 12 : 6;
   const std::uint64_t end = long_run() ? 1088 : 576;
   const auto scene = GetParam().scene().prepare();
   double hits = 0, scored = 0, wide = 0, late = 0, tails = 0;

@@ -11,6 +11,7 @@
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/accuracy/quantiles.hpp"
 #include "raykiln/accuracy/true_error.hpp"
+#include "support/sanitized.hpp"
 #include "support/small_rooms.hpp"
 
 namespace raykiln::render {
@@ -34,7 +35,7 @@ struct Case {
 class RealScenes : public ::testing::TestWithParam<Case> {};
 
 TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
-  const std::size_t seeds = long_run() ? 200 : 64;
+  const std::size_t seeds = tests::kSanitized ? 4 : long_run() ? 200 : 64;
   RenderSettings settings;
   settings.width = settings.height = long_run() ? 24 : 12;
   settings.sampler = GetParam().sampler;
@@ -77,6 +78,7 @@ TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
   RecordProperty("width", std::to_string(std::exp(width)));
   std::printf("%s: image %.3f of %zu, pixels %.4f of %.0f, flagged %.3f, true/shown relMSE %.3f, high/low %.3f\n",
               GetParam().name, covered / n, seeds, inside / all, all, flagged / n, ratio, std::exp(width));
+  if (tests::kSanitized) return;  // 4 seeds say nothing of rates
   // What is shown is the truth on average, up to what few samples can tell.
   EXPECT_GT(ratio, GetParam().tame ? 0.95 : 0.8);
   EXPECT_LT(ratio, GetParam().tame ? 1.05 : 1.25);
