@@ -107,9 +107,13 @@ void fuzz(const Texts& base, const std::string& target, const std::vector<std::s
     Mutator mutate(seed * 1'000'003 + i);
     Texts files = base;
     files[target] = mutate(files[target], others[mutate.below(others.size())]);
-    const ImportResult result = import_texts(files, options);
-    accepted += std::holds_alternative<ImportedScene>(result) ? 1U : 0U;
-    check(result);
+    try {
+      const ImportResult result = import_texts(files, options);
+      accepted += std::holds_alternative<ImportedScene>(result) ? 1U : 0U;
+      check(result);
+    } catch (const std::exception& thrown) {
+      ADD_FAILURE() << "imports do not throw: " << thrown.what();
+    }
     if (testing::Test::HasFailure()) {
       std::ofstream("fuzz_failure.bin", std::ios::binary) << files[target];
       FAIL() << "iteration " << i << "; the input is in fuzz_failure.bin";

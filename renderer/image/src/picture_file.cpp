@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <new>
 
 #include "colour_channels.hpp"
 #include "png_chunks.hpp"
@@ -15,6 +16,9 @@ namespace raykiln::render {
 namespace {
 
 constexpr int kMostChannels = 64;
+/// No format packs more pixels into a byte: deflate makes 1032 bytes of one, of 8 one-bit pixels each. A
+/// header that promises more is a bomb or damaged, and nothing is allocated for it.
+constexpr std::uint64_t kMostPixelsOfByte = 1032 * 8;
 
 struct Magic {
   std::string_view bytes;
@@ -37,7 +41,7 @@ bool stays_bytes(PictureFormat format, const OIIO::ImageSpec& spec) {
 }
 
 std::optional<PictureFileError> check(PictureFormat format, const OIIO::ImageSpec& spec,
-                                      const PictureFileLimits& limits) {
+                                      std::size_t file_bytes, const PictureFileLimits& limits) {
   if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.deep) {
     return PictureFileError{.message = "it holds no flat picture"};
   }
@@ -47,6 +51,10 @@ std::optional<PictureFileError> check(PictureFormat format, const OIIO::ImageSpe
     return PictureFileError{.message = "it is too large: " + size_text(spec) + ", " +
                             std::to_string(spec.nchannels) + " channels; at most " +
                             std::to_string(limits.max_pixels) + " pixels are read"};
+  }
+  if (pixels / kMostPixelsOfByte > file_bytes) {
+    return PictureFileError{.message = "it is damaged: " + size_text(spec) + " pixels cannot be in " +
+                            std::to_string(file_bytes) + " bytes"};
   }
   const std::uint64_t bytes = 3 * pixels * (stays_bytes(format, spec) ? 1 : sizeof(float));
   if (bytes > limits.max_bytes) {
@@ -120,8 +128,11 @@ std::string_view name(PictureFormat format) {
   return "hdr";
 }
 
-std::variant<PictureFile, PictureFileError> read_picture_file(std::span<const std::uint8_t> bytes,
-                                                              const PictureFileLimits& limits) {
+namespace {
+
+using PictureOrError = std::variant<PictureFile, PictureFileError>;
+
+PictureOrError decode_file(std::span<const std::uint8_t> bytes, const PictureFileLimits& limits) {
   const auto format = picture_format(bytes);
   if (!format) return PictureFileError{.message = "it is neither PNG nor JPEG, EXR or HDR"};
   if (*format == PictureFormat::kPng && !png_is_whole(bytes)) {
@@ -137,7 +148,7 @@ std::variant<PictureFile, PictureFileError> read_picture_file(std::span<const st
   if (!input->open("a." + kind, spec, wish)) {
     return PictureFileError{.message = "it cannot be read: " + input->geterror()};
   }
-  if (auto error = check(*format, input->spec(), limits)) return *error;
+  if (auto error = check(*format, input->spec(), bytes.size(), limits)) return *error;
   const auto channels = colour_channels(input->spec().channelnames);
   if (!channels) return PictureFileError{.message = "it has no channels R, G, B"};
   PictureFile picture{.format = *format,
@@ -149,6 +160,16 @@ std::variant<PictureFile, PictureFileError> read_picture_file(std::span<const st
     return PictureFileError{.message = "it cannot be read: " + input->geterror()};
   }
   return picture;
+}
+
+}  // namespace
+
+PictureOrError read_picture_file(std::span<const std::uint8_t> bytes, const PictureFileLimits& limits) {
+  try {
+    return decode_file(bytes, limits);
+  } catch (const std::bad_alloc&) {  // the library's buffers for a very wide picture
+    return PictureFileError{.message = "memory ran out while it was decoded", .no_room = true};
+  }
 }
 
 }  // namespace raykiln::render

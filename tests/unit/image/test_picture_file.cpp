@@ -110,6 +110,14 @@ TEST(PictureFile, SizeIsCheckedBeforeItIsAllocated) {
   EXPECT_NE(std::get<PictureFileError>(refused).message.find("3 x 2"), std::string::npos);
 }
 
+TEST(PictureFile, AHeaderCannotPromiseWhatTheFileIsTooSmallFor) {
+  const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 21474837\n\x80\x80\x80\x80";
+  const Bytes bytes(text.begin(), text.end());
+  const auto read = read_picture_file(bytes, {.max_pixels = std::uint64_t{1} << 26});
+  ASSERT_TRUE(std::holds_alternative<PictureFileError>(read));
+  EXPECT_NE(std::get<PictureFileError>(read).message.find("cannot be in"), std::string::npos);
+}
+
 TEST(PictureFile, OtherFormatsAreRefused) {
   for (const std::string text : {"", "BM", "GIF89a.....", "II*\0........", "<svg></svg>", "#?", "\x89PN"}) {
     const Bytes bytes(text.begin(), text.end());
