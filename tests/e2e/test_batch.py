@@ -284,7 +284,8 @@ def test_a_server_that_stays_away_has_a_code_of_its_own(gallery, tmp_path, api):
 
     with Proxy(api.daemon.port, fault) as proxy:
         begun = time.monotonic()
-        done = raykiln("batch", path, "--server", proxy.url, "--junit", tmp_path / "junit.xml", "--html", tmp_path / "report")
+        done = raykiln("batch", path, "--server", proxy.url, "--junit", tmp_path / "junit.xml", "--html", tmp_path / "report",
+                       timeout=180.0)
     assert done.returncode == 6 and 60 < time.monotonic() - begun < 120 + 60 * SLOW, done.stderr
     assert "--resume" in done.stderr and "b_" in done.stderr and 10 <= len(gone) < 60, (done.stderr, gone)
 
