@@ -1,4 +1,4 @@
-// What both benchmarks of the tree share: clocks, the machine, JSON, meshes by name.
+// What the benchmarks of the tree share: clocks, the machine, JSON.
 #pragma once
 
 #include <time.h>
@@ -7,16 +7,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "support/mesh_generators.hpp"
+#include "bench_scenes.hpp"
 
 namespace raykiln::bench {
 
@@ -106,84 +103,5 @@ inline bool write_file(const std::string& path, const std::string& text) {
   out << text << '\n';
   return out.good();
 }
-
-/// Houses on a square grid: n / 12 boxes of two heights and more.
-inline test::TestMesh city(std::size_t n, std::uint64_t seed) {
-  test::TestMesh mesh;
-  test::TestRandom random(seed);
-  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(n) / 12)));
-  for (std::uint32_t house = 0; house < side * side; ++house) {
-    test::TestMesh box = test::box_room(1, 0.5F);
-    const float tall = random.uniform(0.5F, random.below(8) == 0 ? 8.0F : 2.0F);
-    const render::Vec3f size(random.uniform(0.4F, 0.9F), random.uniform(0.4F, 0.9F), tall);
-    const render::Vec3f at(static_cast<float>(house % side), static_cast<float>(house / side), 0.0F);
-    for (auto& p : box.positions) p = at + (p + render::Vec3f(0.0F, 0.0F, 0.5F)) * size;
-    mesh.append(std::move(box));
-  }
-  return mesh;
-}
-
-/// Floor and two walls, open to the camera, with twelve finely tessellated balls: small triangles
-/// beside large ones.
-inline test::TestMesh room(std::size_t n, std::uint64_t seed) {
-  test::TestMesh mesh = test::coplanar_grid(4, 0, -1.0F);
-  mesh.append(test::coplanar_grid(4, 1, 1.0F));
-  mesh.append(test::coplanar_grid(4, 2, -1.0F));
-  test::TestRandom random(seed);
-  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(n) / 24)));
-  for (int ball = 0; ball < 12; ++ball) {
-    const float radius = random.uniform(0.08F, 0.3F);
-    mesh.append(test::sphere(side, side + 1, random.in_box(-0.7F, 0.7F), radius));
-  }
-  return mesh;
-}
-
-/// Corners and faces of a Wavefront file; faces become fans, everything else is left out.
-inline std::optional<test::TestMesh> read_obj(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) return std::nullopt;
-  test::TestMesh mesh;
-  std::string word;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    words >> word;
-    if (word == "v") {
-      render::Vec3f p(0.0F);
-      words >> p.x >> p.y >> p.z;
-      mesh.positions.push_back(p);
-    } else if (word == "f") {
-      std::vector<std::uint32_t> face;
-      while (words >> word) {
-        const long i = std::strtol(word.c_str(), nullptr, 10);
-        const auto count = static_cast<long>(mesh.positions.size());
-        if (i == 0 || i > count || -i > count) return std::nullopt;
-        face.push_back(static_cast<std::uint32_t>(i > 0 ? i - 1 : count + i));
-      }
-      for (std::size_t c = 2; c < face.size(); ++c) {
-        mesh.triangles.push_back({face[0], face[c - 1], face[c]});
-      }
-    }
-    word.clear();
-  }
-  return mesh;
-}
-
-/// About n triangles of a family, or those of a file; empty for an unknown name.
-inline std::optional<test::TestMesh> make_mesh(std::string_view family, std::size_t n,
-                                               std::uint64_t seed) {
-  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(n) / 2)));
-  if (family == "terrain") return test::terrain(side, seed);
-  if (family == "soup") return test::soup(n, seed);
-  if (family == "slivers") return test::slivers(n, seed);
-  if (family == "sphere") return test::sphere(side, side + 1);
-  if (family == "hair") return test::hair(static_cast<std::uint32_t>(n / 32), 16, seed);
-  if (family == "city") return city(n, seed);
-  if (family == "room") return room(n, seed);
-  if (family.ends_with(".obj")) return read_obj(std::string(family));
-  return std::nullopt;
-}
-
-inline constexpr const char* kFamilies =
-    "terrain, soup, slivers, sphere, hair, city, room, or a file *.obj";
 
 }  // namespace raykiln::bench
