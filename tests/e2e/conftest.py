@@ -14,6 +14,7 @@ from support.daemon import BIN, Daemon  # noqa: E402
 def pytest_configure(config):
     config.addinivalue_line("markers", "measured: states a time or a size that a sanitizer spoils")
     config.addinivalue_line("markers", "one_thread: long, and nothing for a race detector to find")
+    config.addinivalue_line("markers", "long: does more with RAYKILN_LONG=1; tests/run --full")
     config.addinivalue_line("markers", "size: needs a large model from npm; tests/run --full")
     if not (BIN / "raykilnd").exists():
         pytest.exit(f"no raykilnd in {BIN}: build it, or set RAYKILN_BIN_DIR", returncode=2)

@@ -271,6 +271,7 @@ def test_a_server_that_comes_back_is_asked_again(gallery, tmp_path, api):
     assert verdicts(report) == {"one": "same", "two": "same"}
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.environ.get("RAYKILN_LONG") != "1", reason="RAYKILN_LONG=1: patience takes a minute")
 def test_a_server_that_stays_away_has_a_code_of_its_own(gallery, tmp_path, api):
     path = plan(copy(gallery, tmp_path), ("one", "two"), defaults=OTHER_SEED)

@@ -174,6 +174,9 @@ SUITES = [
                          env={**SANITIZERS, "RAYKILN_SLOW": "15"}), ["web", "tsan"], True),
     Suite("long", "golden, property and hard tests with their long sample counts", long_statistics,
           ["test"], True),
+    Suite("long-e2e", "the daemon's tests of many pictures and of a minute's patience",
+          lambda: pytest("long-e2e", "tests/e2e", "-m", "long", env={"RAYKILN_LONG": "1"}),
+          ["web", "test"], True),
     Suite("size", "a scan of 871 thousand triangles, uploaded and rendered",
           lambda: pytest("size", "tests/e2e", "-m", "size"), ["web", "test"], True),
 ]

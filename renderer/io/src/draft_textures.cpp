@@ -61,8 +61,8 @@ std::optional<std::uint32_t> DraftTextures::unusable(ImportErrorCode code,
     return kNoTexture;
   }
   diagnostics.fail(code, reason, user.file, user.where,
-                   "add it to the upload as PNG, JPEG, EXR or HDR, or set \"allow_missing\" in "
-                   "raykiln.json");
+                   "add it to the upload as PNG, JPEG, EXR or HDR, or go on without it: "
+                   "--allow-missing, ?allow_missing=true, or \"allow_missing\": true in raykiln.json");
   return std::nullopt;
 }
 

@@ -207,14 +207,14 @@ BsdfSample sample(const Bsdf& b, const DirectionNumbers& numbers) {
   return finish<kSides>(b, around_axis(through ? -b.n : b.n, x, v), Lobe::kDiffuse, through, {});
 }
 
-DirectionNumbers numbers_of(const VertexKey& vertex) {
+}  // namespace
+
+DirectionNumbers direction_numbers(const VertexKey& vertex) {
   return {.lobe = uniform(vertex, Dimension::kLobeChoice),
           .side = uniform(vertex, Dimension::kFresnelChoice),
           .u = uniform(vertex, Dimension::kDirectionU),
           .v = uniform(vertex, Dimension::kDirectionV)};
 }
-
-}  // namespace
 
 std::optional<double> specular_share(const Rgb& diffuse, const Rgb& specular) {
   const double d = largest(diffuse), s = largest(specular);
@@ -247,10 +247,10 @@ BsdfSample sample_bsdf(const Bsdf& b, const DirectionNumbers& numbers) {
   return sample<Sides::kBoth>(b, numbers);
 }
 BsdfSample sample_bsdf(const Bsdf& b, const VertexKey& vertex) {
-  return sample<Sides::kBoth>(b, numbers_of(vertex));
+  return sample<Sides::kBoth>(b, direction_numbers(vertex));
 }
 BsdfSample sample_bsdf(const OpaqueBsdf& b, const VertexKey& vertex) {
-  return sample<Sides::kNear>(b, numbers_of(vertex));
+  return sample<Sides::kNear>(b, direction_numbers(vertex));
 }
 
 }  // namespace raykiln::render

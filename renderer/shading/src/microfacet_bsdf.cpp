@@ -243,13 +243,6 @@ BsdfSample sample_about(const MicrofacetBsdf& b, double one_minus_cos, double v,
   return finished(b, wi, lobe, evaluate(b, wi));
 }
 
-DirectionNumbers numbers_of(const VertexKey& vertex) {
-  return {.lobe = uniform(vertex, Dimension::kLobeChoice),
-          .side = uniform(vertex, Dimension::kFresnelChoice),
-          .u = uniform(vertex, Dimension::kDirectionU),
-          .v = uniform(vertex, Dimension::kDirectionV)};
-}
-
 }  // namespace
 
 MicrofacetBsdf make_microfacet_bsdf(const Material& material, const Vec3f& ng, const Vec3f& ns,
@@ -319,7 +312,7 @@ BsdfSample sample_bsdf(const MicrofacetBsdf& b, const DirectionNumbers& numbers)
 }
 
 BsdfSample sample_bsdf(const MicrofacetBsdf& b, const VertexKey& vertex) {
-  return sample_bsdf(b, numbers_of(vertex));
+  return sample_bsdf(b, direction_numbers(vertex));
 }
 
 void leave_out(MicrofacetBsdf& b, const FacetsLeftOut& lobes) {

@@ -88,9 +88,12 @@ struct BsdfSample {
 struct DirectionNumbers {
   double lobe = 0.0, side = 0.0, u = 0.0, v = 0.0;
 };
+/// Dimensions kLobeChoice, kFresnelChoice, kDirectionU and kDirectionV of the vertex.
+[[nodiscard]] DirectionNumbers direction_numbers(const VertexKey& vertex);
+
 [[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const DirectionNumbers& numbers);
 
-/// With dimensions kLobeChoice, kFresnelChoice, kDirectionU and kDirectionV of the vertex.
+/// With the direction_numbers of the vertex.
 [[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const VertexKey& vertex);
 [[nodiscard]] BsdfSample sample_bsdf(const OpaqueBsdf& bsdf, const VertexKey& vertex);
 
