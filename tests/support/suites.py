@@ -108,10 +108,11 @@ BUILT_BEFORE = {name: ["web"] for name in ("test", "asan-ubsan", "tsan")}
 
 
 def ctest(name, directory, env=None, extra=()) -> Tally:
-    junit = LOGS / f"{name}.xml"
+    junit, wholes = LOGS / f"{name}.xml", BUILD / directory.relative_to(BUILD).parts[0] / "gtest"
+    shutil.rmtree(wholes, ignore_errors=True)
     code = step(name, ["ctest", "--test-dir", str(directory), "-j", JOBS, "--output-on-failure",
                        "--no-tests=error", "--output-junit", str(junit), *extra], env=env)
-    return tallies.from_junit(junit, code)
+    return tallies.from_ctest(junit, code, wholes)
 
 
 def ctest_folders(name, preset, folders, env) -> Tally:

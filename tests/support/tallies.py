@@ -25,11 +25,41 @@ class Tally:
 def from_junit(path, exit_code) -> Tally:
     """Counts the cases of a JUnit file. A program that failed although no case did (a crash
     after the last one, a collection error) is one failure more."""
-    tally = Tally()
     try:
-        cases = list(xml.parse(path).getroot().iter("testcase"))
+        cases = cases_of(path)
     except (OSError, xml.ParseError) as error:
         return Tally(failed=1, names=[f"exit code {exit_code}, no readable result file: {error}"])
+    return from_cases(cases, exit_code)
+
+
+def from_ctest(path, exit_code, wholes) -> Tally:
+    """As from_junit, where a program that is one entry of ctest's counts by its own cases, which
+    it left in the folder `wholes`. One that left none (it crashed) is one failure."""
+    try:
+        cases = [part for case in cases_of(path) for part in parts_of(case, wholes)]
+    except (OSError, xml.ParseError) as error:
+        return Tally(failed=1, names=[f"exit code {exit_code}, no readable result file: {error}"])
+    return from_cases(cases, exit_code)
+
+
+def cases_of(path) -> list:
+    return list(xml.parse(path).getroot().iter("testcase"))
+
+
+def parts_of(case, wholes) -> list:
+    file = wholes / f"{case.get('name')}.xml"
+    if not file.exists():
+        return [case]
+    parts = cases_of(file)
+    for part in parts:
+        part.set("name", f"{file.stem}.{part.get('classname')}.{part.get('name')}")
+    failed = any(part.find("failure") is not None for part in parts)
+    # The entry itself stays when it failed for a reason that no case has: a leak at the end, say.
+    return parts if failed or case.get("status") == "run" else [*parts, case]
+
+
+def from_cases(cases, exit_code) -> Tally:
+    tally = Tally()
     for case in cases:
         # ctest calls a test it could not run "disabled" or "notrun": neither is a pass.
         if case.find("failure") is not None or case.find("error") is not None or \
