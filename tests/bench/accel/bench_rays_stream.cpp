@@ -4,11 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstring>
-#include <numbers>
 
 #include "bench_report.hpp"
+#include "ray_sets.hpp"
 #include "raykiln/accel/kernels.hpp"
-#include "raykiln/math/frame.hpp"
 
 namespace {
 
@@ -22,8 +21,6 @@ using raykiln::render::Occlusion;
 using raykiln::render::Ray;
 using raykiln::render::Traversal;
 using raykiln::render::TraversalCounters;
-using raykiln::render::Vec3f;
-using raykiln::test::TestMesh;
 using raykiln::test::TestRandom;
 
 struct Options {
@@ -38,80 +35,6 @@ struct Options {
   std::uint64_t seed = 1;
   std::string json, save_rays;
 };
-
-// Jittered pinhole outside the box looking at its middle, in tiles of 8 x 8 pixels.
-std::vector<Ray> primary_rays(const raykiln::render::Bounds3f& box, const Options& options) {
-  TestRandom random(options.seed);
-  const Vec3f centre = (box.lo + box.hi) * 0.5F;
-  const float radius = 0.5F * raykiln::render::length(box.hi - box.lo);
-  const Vec3f eye = centre + radius * Vec3f(1.1F, -1.3F, 1.2F);
-  const raykiln::render::Frame frame(raykiln::render::normalize(centre - eye));
-  std::vector<Ray> rays;
-  const std::uint32_t tiles = std::max(1U, options.image / 8);
-  for (std::uint32_t tile = 0; tile < tiles * tiles; ++tile) {
-    for (std::uint32_t pixel = 0; pixel < 64; ++pixel) {
-      const auto x = static_cast<float>(tile % tiles * 8 + pixel % 8);
-      const auto y = static_cast<float>(tile / tiles * 8 + pixel / 8);
-      const auto scale = 1.0F / static_cast<float>(tiles * 8);
-      const float px = (x + random.uniform()) * scale - 0.5F;
-      const float py = (y + random.uniform()) * scale - 0.5F;
-      Ray ray;
-      ray.o = eye;
-      ray.d = frame.to_world({px, py, 1.1F});
-      rays.push_back(ray);
-    }
-  }
-  return rays;
-}
-
-struct SurfacePoint {
-  Vec3f position, normal;  ///< the normal on the side where the ray came from
-};
-
-std::vector<SurfacePoint> surface_points(const TestMesh& mesh, const std::vector<Ray>& rays,
-                                         const std::vector<Hit>& hits) {
-  std::vector<SurfacePoint> points;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    if (hits[i].id == kNoHit) continue;
-    const auto p = mesh.corners(hits[i].id);
-    Vec3f n = raykiln::render::normalize(raykiln::render::cross(p[1] - p[0], p[2] - p[0]));
-    if (raykiln::render::dot(n, rays[i].d) > 0.0F) n = -n;
-    if (!(raykiln::render::dot(n, n) > 0.5F)) continue;
-    const Vec3f at = p[0] * (1.0F - hits[i].u - hits[i].v) + p[1] * hits[i].u + p[2] * hits[i].v;
-    points.push_back({at + n * 1e-5F, n});
-  }
-  return points;
-}
-
-std::vector<Ray> cosine_bounces(const std::vector<SurfacePoint>& points, std::uint64_t seed) {
-  TestRandom random(seed);
-  std::vector<Ray> rays;
-  for (const SurfacePoint& point : points) {
-    const float r = std::sqrt(random.uniform());
-    const float phi = 2.0F * std::numbers::pi_v<float> * random.uniform();
-    const Vec3f local(r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0F - r * r));
-    Ray ray;
-    ray.o = point.position;
-    ray.d = raykiln::render::Frame(point.normal).to_world(local);
-    rays.push_back(ray);
-  }
-  return rays;
-}
-
-std::vector<Ray> shadow_rays(const std::vector<SurfacePoint>& points,
-                             const raykiln::render::Bounds3f& box) {
-  const Vec3f size = box.hi - box.lo;
-  const Vec3f light = box.hi + size * Vec3f(-0.3F, -0.6F, 0.5F);
-  std::vector<Ray> rays;
-  for (const SurfacePoint& point : points) {
-    Ray ray;
-    ray.o = point.position;
-    ray.d = light - point.position;
-    ray.t_max = 1.0F;
-    rays.push_back(ray);
-  }
-  return rays;
-}
 
 /// What one kernel made of one class of rays.
 template <typename Answer>
@@ -271,13 +194,15 @@ int run(const Options& options) {
     }
     raykiln::render::SerialTaskRunner runner;
     const auto tree = raykiln::render::build_kdtree(mesh->view(), options.params, runner);
+    const raykiln::render::Bounds3f box = raykiln::render::bounds(*tree);
     Bench bench(options, *tree, family);
-    auto rays = primary_rays(raykiln::render::bounds(*tree), options);
-    auto points = surface_points(*mesh, rays, bench.measure<Hit>("primary", rays));
-    bench.measure<Occlusion>("shadow", shadow_rays(points, raykiln::render::bounds(*tree)));
+    auto rays = raykiln::bench::primary_rays(box, options.image, options.seed);
+    auto points = raykiln::bench::surface_points(*mesh, rays, bench.measure<Hit>("primary", rays));
+    bench.measure<Occlusion>("shadow",
+                             raykiln::bench::shadow_rays(points, box, options.seed + 2));
     for (const char* name : {"diffuse 1", "diffuse 2"}) {
-      rays = cosine_bounces(points, options.seed + 1);
-      points = surface_points(*mesh, rays, bench.measure<Hit>(name, rays));
+      rays = raykiln::bench::cosine_bounces(points, options.seed + 1);
+      points = raykiln::bench::surface_points(*mesh, rays, bench.measure<Hit>(name, rays));
     }
     results.insert(results.end(), bench.results.begin(), bench.results.end());
     wrong += bench.wrong_in_all;
