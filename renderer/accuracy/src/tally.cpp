@@ -16,16 +16,16 @@ double relative_variance(const SquaredError& e, double correlation) {
 }  // namespace
 
 void add(Tally& tally, const SquaredErrors& errors, std::span<const PixelStatistics> pixels,
-         const Windows& windows, double correlation, std::size_t begin, std::size_t end) {
+         const Windows& windows, double correlation, const PixelRect& core) {
   std::vector<double> sums(errors.size());
   std::transform(errors.begin(), errors.end(), sums.begin(), [](const SquaredError& e) { return e.total(); });
   const std::vector<double> others = windows.means_of_others(sums);
-  for (std::size_t i = begin; i < end; ++i) {
-    if (!(sums[i] > 0.0)) continue;
+  windows.each(core, [&](std::size_t i) {
+    if (!(sums[i] > 0.0)) return;
     const double square = sums[i] * std::max(others[i], sums[i] * (1.0 - pixels[i].scatter));
     tally.sum += sums[i];
     tally.variance += relative_variance(errors[i], correlation) * square * (1.0 + 1.0 / pixels[i].degrees);
-  }
+  });
 }
 
 }  // namespace raykiln::render

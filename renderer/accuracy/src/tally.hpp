@@ -23,7 +23,7 @@ struct SquaredError {
 /// Of one kind (relative, linear, display), one a pixel.
 using SquaredErrors = std::vector<SquaredError>;
 
-/// Adds the pixels [begin, end) of `errors`. With Y_i the n samples less their limit, the real square
+/// Adds the pixels of `core` in `errors`. With Y_i the n samples less their limit, the real square
 /// less its estimate is (mean Y)^2 - s^2/n = sum over i != j of Y_i Y_j / (n (n - 1)): its variance is
 /// 2 v^2 with v the true variance of the mean, whatever the distribution of the samples (`spread` then
 /// is sqrt(2) v; what is not linear in the error says its own). v^2 is taken
@@ -31,6 +31,6 @@ using SquaredErrors = std::vector<SquaredError>;
 /// 5 x 5 pixels around if that is larger: both are right where tails are heavy, when the square of the
 /// estimate is many times too large. `correlation` is that of the noise of two channels.
 void add(Tally& tally, const SquaredErrors& errors, std::span<const PixelStatistics> pixels,
-         const Windows& windows, double correlation, std::size_t begin, std::size_t end);
+         const Windows& windows, double correlation, const PixelRect& core);
 
 }  // namespace raykiln::render

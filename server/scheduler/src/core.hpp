@@ -45,7 +45,6 @@ struct LiveJob {
   SteadyTime published_at{};
 
   // The error of the picture.
-  bool measuring = false;   ///< a copy of the film is being judged
   bool deciding = false;    ///< the film is being judged, and nothing of it is in flight
   double measure_at = 0.0;  ///< render seconds from which it is judged anew
   std::vector<float> pixel_seconds;  ///< of workers
@@ -134,7 +133,6 @@ class Scheduler::Core {
   void decided(LiveJob& job, PictureError error, double seconds, JobStatistics then);
   void finish(LiveJob& job, DoneBy by);
   void measure_if_due(LiveJob& job);
-  void measured(const JobId& id, const PictureError& error, double cost, const JobStatistics& then);
   void note_error(LiveJob& job, PictureError error, const JobStatistics& then);
 
   // core_publish.cpp

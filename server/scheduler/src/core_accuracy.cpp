@@ -10,8 +10,6 @@ namespace {
 
 /// Looks follow at least so far apart, as a ratio of render seconds.
 constexpr double kStep = 1.1;
-/// Larger films are judged at decisions and in the end only: a look copies the film.
-constexpr std::uint64_t kMostLivePixels = 500'000;
 
 bool samples_area(const JobSnapshot& job) { return job.request.pixel_mode == PixelMode::kRandom; }
 
@@ -112,43 +110,17 @@ void Scheduler::Core::finish(LiveJob& job, DoneBy by) {
 
 void Scheduler::Core::measure_if_due(LiveJob& job) {
   JobSnapshot& s = job.snapshot;
-  if (!(config_.scheduler.look_share > 0.0) || !job.plan || job.ending || !job.new_samples) return;
+  if (!(config_.scheduler.look_share > 0.0) || !job.plan || job.ending || job.deciding || !job.new_samples) return;
   refresh(job);
   const double now = s.statistics.render_seconds;
   const bool whole = s.progress.tiles_started == s.progress.tiles && s.progress.samples_per_pixel >= 2.0;
-  const auto pixels = static_cast<std::uint64_t>(s.request.width) * static_cast<std::uint64_t>(s.request.height);
-  if (!whole || job.measuring || now < job.measure_at || pixels > kMostLivePixels) return;
-  // Judged elsewhere, from a copy: workers would run out of tasks while this strand looks at every pixel.
+  const bool newer = s.curve.empty() || now > s.curve.back().render_seconds;
+  if (!whole || !newer || now < job.measure_at) return;
   const SteadyTime begin = parts_.clock.steady();
-  const auto film = std::make_shared<const render::Film>(*job.film);
-  const double copying = seconds_between(begin, parts_.clock.steady());
-  job.measuring = true;
-  disk_.post([this, id = s.id, film, copying, area = samples_area(s), then = s.statistics] {
-    const SteadyTime looked = parts_.clock.steady();
-    PictureError error;
-    try {
-      error = judge_picture(*film, area);
-    } catch (const std::exception& fault) {  // there is no other look at this job but the last
-      return parts_.log.warn("error_not_judged", {{"job", id}, {"why", fault.what()}});
-    }
-    const double cost = copying + seconds_between(looked, parts_.clock.steady());
-    post([this, id, error, cost, then] { measured(id, error, cost, then); });
-  });
-}
-
-/// A look has ended. What was judged since then is newer.
-void Scheduler::Core::measured(const JobId& id, const PictureError& error, double cost,
-                               const JobStatistics& then) {
-  LiveJob* job = find(id);
-  if (job == nullptr) return;
-  JobSnapshot& s = job->snapshot;
-  job->measuring = false;
+  note_error(job, look_at_picture(*job.film, samples_area(s)), s.statistics);
+  const double cost = seconds_between(begin, parts_.clock.steady());
   s.statistics.accuracy_seconds += cost;
-  job->measure_at = std::max(kStep * then.render_seconds, then.render_seconds + cost / config_.scheduler.look_share);
-  const bool newer = s.curve.empty() || then.render_seconds > s.curve.back().render_seconds;
-  if (job->ending || !newer) return;
-  note_error(*job, error, then);
-  publish_soon(*job);
+  job.measure_at = std::max(kStep * now, now + cost / config_.scheduler.look_share);
 }
 
 void Scheduler::Core::note_error(LiveJob& job, PictureError error, const JobStatistics& then) {

@@ -299,16 +299,16 @@ void Scheduler::Core::archive_if_drained(LiveJob& job) {
   if (job.snapshot.progress.samples_done == 0) return archived(id, success(), nullptr, std::nullopt);
   const JobImagePtr beauty = resolve(job, false);
   // Nothing is merged any more: the film is read, and its error judged, where it holds up nobody.
-  // Who cancels does not wait: the error of a large picture is the one last judged.
-  const bool judged = *job.ending != JobEvent::kDrained || job.settings.width * job.settings.height <= parts_.judged_at_once_px;
-  disk_.post([this, id, beauty, judged, film = std::shared_ptr<const render::Film>(job.film),
+  // Who cancels does not wait: a large picture is looked at, not judged in full.
+  const bool in_full = *job.ending != JobEvent::kDrained || job.settings.width * job.settings.height <= parts_.judged_at_once_px;
+  disk_.post([this, id, beauty, in_full, film = std::shared_ptr<const render::Film>(job.film),
               seconds = std::move(job.pixel_seconds),
               samples_area = job.snapshot.request.pixel_mode == PixelMode::kRandom] {
     Status saved = success();
     std::optional<PictureError> error;
     auto image = std::make_shared<JobImage>(*beauty);
     try {
-      if (judged) error = judge_picture(*film, samples_area);
+      error = in_full ? judge_picture(*film, samples_area) : look_at_picture(*film, samples_area);
       add_layers(*image, *film, seconds);
       const auto& picture = image->image;
       saved = parts_.store.put_image(id, {picture.width, picture.height, picture.rgb, image->error,

@@ -9,10 +9,7 @@ static_assert(kErrorFloor == render::kSampleFloor);
 
 ErrorFigure figure(const render::Figure& f) { return {f.value, f.low, f.high}; }
 
-}  // namespace
-
-PictureError judge_picture(const render::Film& film, bool samples_area) {
-  const render::ImageError found = render::image_error(film);
+PictureError as_shown(const render::ImageError& found, bool samples_area) {
   PictureError error;
   error.grade = name(found.grade);
   error.error = figure(found.error);
@@ -23,6 +20,16 @@ PictureError judge_picture(const render::Film& film, bool samples_area) {
   error.least_samples = found.least_samples;
   error.mean_samples = found.mean_samples;
   return error;
+}
+
+}  // namespace
+
+PictureError judge_picture(const render::Film& film, bool samples_area) {
+  return as_shown(render::image_error(film), samples_area);
+}
+
+PictureError look_at_picture(const render::Film& film, bool samples_area) {
+  return as_shown(render::quick_image_error(film), samples_area);
 }
 
 }  // namespace raykiln::server

@@ -87,6 +87,35 @@ TEST_P(Coverage, OfSinglePixels) {
   EXPECT_LE(share, 0.97) << label;
 }
 
+// A look at part of the pixels of pictures whose noise is uneven: its interval holds the real error of them all.
+TEST_P(Coverage, OfTheErrorFromASampleOfThePixels) {
+  const auto& [label, truth, sample] = GetParam();
+  constexpr int kAcross = 144, kDown = 100, kLooks = 24;
+  const auto scaled = [&, &light = truth](int x, int y) { return light(x / 6, y / 5); };
+  const std::vector<double> reference = synthetic_truth(kAcross, kDown, scaled);
+  int held = 0;
+  double ratio = 0.0, width = 0.0;
+  for (std::uint64_t seed = 0; seed < kLooks; ++seed) {
+    const Film film = synthetic_film(kAcross, kDown, 8, seed, [&](int x, int y, TestRandom& random) {
+      const double calm = (x - 90) * (x - 90) + (y - 30) * (y - 30) < 400 ? 0.0 : 0.6;  // a noisy disc
+      const Rgbd light = scaled(x, y);
+      return light * calm + sample(light, random) * (1.0 - calm);
+    });
+    const ImageError shown = quick_image_error(film);
+    ASSERT_TRUE(shown.sampled);
+    const TrueError real = true_error(pixel_errors(film).mean, reference);
+    held += shown.error.low <= real.error && real.error <= shown.error.high ? 1 : 0;
+    ratio += real.rel_mse / shown.rel_mse.value / kLooks;
+    width += std::log(shown.error.high / shown.error.low) / kLooks;
+  }
+  RecordProperty("held", held);
+  RecordProperty("ratio", std::to_string(ratio));
+  RecordProperty("width", std::to_string(std::exp(width)));
+  EXPECT_GE(held, 19) << label;  // 22.8 expected, less 3.6 standard deviations
+  EXPECT_NEAR(ratio, 1.0, 0.08) << label;
+  EXPECT_LE(std::exp(width), 1.5) << label;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Pictures, Coverage,
     ::testing::Values(Picture{"ramp", ramp, grey_exponential}, Picture{"colours", ramp, coloured_uniform},

@@ -69,6 +69,22 @@ TEST(ImageError, ABlackPictureHasNoRelativeError) {
   EXPECT_EQ(unseen_bound(5.0, 0), 5.0);
 }
 
+TEST(QuickImageError, IsThatOfTheWholeWhereThePictureIsSmall) {
+  const Film film = synthetic_film(96, 64, 4, 3, [](int, int, auto& random) { return Rgbd(random.uniform()); });
+  const ImageError quick = quick_image_error(film);
+  EXPECT_FALSE(quick.sampled);
+  EXPECT_EQ(quick.error.high, image_error(film).error.high);
+}
+
+TEST(QuickImageError, SaysThatItIsASampleAndWhatHasNoFigure) {
+  Film film(160, 120);
+  EXPECT_EQ(error_notices(quick_image_error(film), true), (Notices{"unsampled_pixels", "error_unknown", "error_sampled"}));
+  const Film still = synthetic_film(160, 120, 2, 1, [](int x, int, auto&) { return Rgbd(1.0 + x); });
+  const ImageError none = quick_image_error(still);
+  EXPECT_EQ(none.error.high, 0.0);
+  EXPECT_EQ(error_notices(none, true), (Notices{"error_rough", "error_sampled", "no_variance"}));
+}
+
 TEST(ImageError, ScalesWithTheLight) {
   const auto film = [](double scale) {
     return synthetic_film(16, 40, 64, 7, [scale](int x, int y, auto& random) {

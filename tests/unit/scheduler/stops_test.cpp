@@ -107,6 +107,35 @@ TEST(Stops, ATargetOutOfReachEndsByTimeAndSaysSo) {
   EXPECT_FALSE(target_met(ended.job.request.stop, *ended.job.accuracy));
 }
 
+TEST(Stops, LargePicturesAreLookedAtOnASampleAndJudgedInFullInTheEnd) {
+  const TempDirectory directory;
+  Config config;
+  config.scheduler.look_share = 1.0;
+  ServerRig rig(directory.path(), 2, {}, config);
+  JobRequest request = small_job(rig.add_scene("a room")->scene.record.id, 32);
+  request.width = 160;
+  request.height = 120;
+  std::vector<JobSnapshot> seen;
+  const JobSnapshot last = rig.wait_final(rig.submit(request)->job.id, &seen);
+  const auto sampled = [](const JobSnapshot& s) {
+    return s.accuracy && std::count(s.accuracy->notices.begin(), s.accuracy->notices.end(), "error_sampled") > 0;
+  };
+  EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), sampled));
+  EXPECT_FALSE(sampled(last));
+  // Who cancels a large picture gets a look at what it has by then.
+  request.stop.samples = 1'000'000;
+  rig.scheduler.reset();
+  rig.judged_at_once_px = 0;
+  rig.config.scheduler.look_share = 0.0;
+  rig.start();
+  const std::string id = rig.submit(request)->job.id;
+  rig.follow(id, [](const JobSnapshot& s) { return s.progress.samples_per_pixel >= 4.0; });
+  (void)rig.cancel(id);
+  const JobSnapshot cancelled = rig.wait_final(id);
+  EXPECT_TRUE(sampled(cancelled));
+  EXPECT_GE(cancelled.accuracy->mean_samples, 4.0);
+}
+
 TEST(Stops, EveryJobKnowsItsError) {
   const Ended ended = run(2, [](JobRequest& r) { r.stop.samples = 64; });
   ASSERT_TRUE(ended.job.accuracy);

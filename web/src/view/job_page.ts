@@ -285,6 +285,8 @@ const kNotices: Record<string, string> = {
   heavy_tailed: "rare bright samples: the error is larger than shown",
   no_variance: "no two samples differ: no noise, or light that was never found",
   error_rough: "fewer than 64 samples: intervals may be too narrow",
+  error_sampled: "judged on a sample of the pixels, in full when the job ends",
+  adaptive: "samples were placed where the error was: a small bias is possible",
   error_unknown: "too few samples to judge",
   unsampled_pixels: "some pixels have no sample",
   aliasing_not_measured: "aliasing is not measured",

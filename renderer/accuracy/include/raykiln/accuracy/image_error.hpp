@@ -40,6 +40,8 @@ struct ImageError {
   /// No two samples of any pixel differ. True of a picture without noise, and of one in which no
   /// sample has found the light: samples alone cannot tell.
   bool no_variance = false;
+  /// Judged on a sample of the pixels, which the intervals include; counts are those of the sample then.
+  bool sampled = false;
 
   std::uint64_t pixels = 0, unsampled_pixels = 0;  ///< unsampled: no sample at all
   std::uint64_t least_samples = 0;                 ///< of the poorest pixel
@@ -48,11 +50,14 @@ struct ImageError {
 };
 
 /// Noise alone: what samples cannot cure (truncated paths, approximations, light that no sample has
-/// found) is not in it. A pure function of the film. About 250 bytes times width times 24 rows of
-/// working memory. `exposure_stops` is for display_rmse.
+/// found) is not in it. A pure function of the film. Some 3 MB of working memory. `exposure_stops` is for display_rmse.
 [[nodiscard]] ImageError image_error(const Film& film, double exposure_stops = 0.0);
 
-/// Codes of what must be said beside the figures: "error_unknown", "error_rough", "heavy_tailed",
+/// The same from a sample of the pixels that depends on the size of the film alone, at a cost that does not grow with
+/// it: for a picture that is looked at again and again while it is rendered. Below 12288 pixels (or 24 rows or columns) it is image_error().
+[[nodiscard]] ImageError quick_image_error(const Film& film, double exposure_stops = 0.0);
+
+/// Codes of what must be said beside the figures: "error_unknown", "error_rough", "error_sampled", "heavy_tailed",
 /// "no_variance", "unsampled_pixels", and "aliasing_not_measured" when the pixel mode samples no area.
 [[nodiscard]] std::vector<std::string> error_notices(const ImageError& error, bool samples_area);
 

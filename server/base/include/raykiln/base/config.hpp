@@ -47,7 +47,7 @@ struct SchedulerSettings {
   double task_seconds_target = 0.025;
   double task_seconds_high = 0.050;
   std::chrono::milliseconds publish_interval{150};  ///< least time between progress revisions
-  double look_share = 0.005;                     ///< of the render time, to judge running pictures; 0: never
+  double look_share = 0.01;                      ///< of the render time, to look at running pictures; 0: never
   std::size_t max_cached_images = 4;             ///< resolved pictures kept for the API
   std::size_t max_kept_jobs = 10'000;            ///< finished jobs kept in the store
 };
