@@ -50,7 +50,7 @@ TEST(K04_Needles, StopAtTheBudget) {
       row.measured("budget reached", stats.budget_reached ? "yes" : "no");
       row.measured("tree MB", static_cast<double>(stats.bytes) / 1048576.0);
     }
-    const std::uint64_t rays = 10'000;
+    const std::uint64_t rays = trials(10'000, 10'000);
     total += trace_and_compare(*tree, rays, rays, [&] {
       return test::ray_to(random.in_box(-0.5F, 1.5F),
                           test::point_on(random, mesh.corners(random.below(n))));
@@ -136,7 +136,7 @@ TEST(K08_GiantAndTiny, RaysIntoTheCluster) {
           "median triangles tested a ray <= 50; hits equal brute force; build finishes");
   TestRandom random(801);
   Tally total;
-  const std::uint32_t most = 1'000'000;
+  const std::uint32_t most = tests::kSanitized ? 100'000 : 1'000'000;
   for (const auto& [n, unit] : {std::pair{most, 1.0F}, {most / 10, 0x1p-20F}, {most / 10, 0x1p20F}}) {
     const Stadium s = stadium(n, unit, 80);
     const double start = cpu_seconds();
