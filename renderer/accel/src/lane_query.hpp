@@ -19,6 +19,12 @@ struct LaneBest {
   std::uint32_t id;
 };
 
+/// A ray made ready for the test in double, see shear_ray.
+struct LaneShear {
+  double sx, sy, inv_dz;
+  std::uint64_t main_axis;
+};
+
 struct LaneCounts {
   std::uint64_t node_steps, leaf_visits, block_tests, unusable_rays, lane_slots;
 };
@@ -34,7 +40,8 @@ struct LaneQuery {
 
   /// Called for `lanes` (a bit each) of `block` that passed the filter. Closest-hit: the best hit
   /// from now on. Any-hit: an id other than kLaneNoHit ends the ray.
-  LaneBest (*decide)(void* context, std::size_t ray, std::uint32_t block, std::uint32_t lanes);
+  LaneBest (*decide)(void* context, std::size_t ray, const LaneShear& shear, std::uint32_t block,
+                     std::uint32_t lanes);
   void* context;
 };
 

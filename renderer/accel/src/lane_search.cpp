@@ -10,6 +10,32 @@ namespace {
 
 static_assert(kLaneStack >= kMaxKdDepth + 2 && kLaneNoHit == kNoHit);
 
+/// The ray with what its lane keeps for it; see shear_ray.
+ShearedRay sheared_ray(const Ray& ray, const LaneShear& shear) {
+  ShearedRay sheared;
+  const std::size_t kz = shear.main_axis;
+  sheared.o = {ray.o.x, ray.o.y, ray.o.z};
+  sheared.k = {kz == 2 ? 0 : kz + 1, kz == 0 ? 2 : kz - 1, kz};
+  sheared.sx = shear.sx;
+  sheared.sy = shear.sy;
+  sheared.inv_dz = shear.inv_dz;
+  sheared.t_min = ray.t_min;
+  sheared.t_max = ray.t_max;
+  return sheared;
+}
+
+/// Calls accept(hit) for the hits among `lanes` of the block until it returns true.
+template <int W, typename Accept>
+void decide_lanes(const ShearedRay& ray, const LeafBlock<W>& block, std::uint32_t lanes,
+                  std::uint64_t& decided, Accept&& accept) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    ++decided;
+    Hit hit;
+    if (!test_lane(ray, block, static_cast<std::size_t>(std::countr_zero(lanes)), hit)) continue;
+    if (accept(hit)) return;
+  }
+}
+
 template <int W>
 struct Closest {
   const LeafBlock<W>* blocks;
@@ -18,18 +44,14 @@ struct Closest {
   std::span<const HitOrder> after;
   std::uint64_t decided = 0;
 
-  LaneBest decide(std::size_t ray, std::uint32_t block, std::uint32_t lanes) {
+  LaneBest decide(std::size_t ray, const ShearedRay& sheared, std::uint32_t block,
+                  std::uint32_t lanes) {
     Hit& best = hits[ray];
-    ShearedRay sheared;
-    shear_ray(rays[ray], sheared);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      ++decided;
-      Hit hit;
-      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-      if (!test_lane(sheared, blocks[block], lane, hit)) continue;
+    decide_lanes(sheared, blocks[block], lanes, decided, [&](const Hit& hit) {
       const bool counts = after.empty() || comes_after(hit, after[ray]);
       if (counts && comes_before(hit, best)) best = hit;
-    }
+      return false;
+    });
     return {best.t, best.id};
   }
 };
@@ -42,19 +64,16 @@ struct Any {
   const KdTree& tree;
   std::uint64_t decided = 0;
 
-  LaneBest decide(std::size_t ray, std::uint32_t block, std::uint32_t lanes) {
-    ShearedRay sheared;
-    shear_ray(rays[ray], sheared);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      ++decided;
-      Hit hit;
-      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-      if (!test_lane(sheared, blocks[block], lane, hit)) continue;
+  LaneBest decide(std::size_t ray, const ShearedRay& sheared, std::uint32_t block,
+                  std::uint32_t lanes) {
+    LaneBest found{0.0F, kNoHit};
+    decide_lanes(sheared, blocks[block], lanes, decided, [&](const Hit& hit) {
       const bool opaque = tree.opaque(hit.id);
       result[ray] = opaque ? Occlusion::kOpaque : Occlusion::kUndecided;
-      if (opaque) return {hit.t, hit.id};
-    }
-    return {0.0F, kNoHit};
+      if (opaque) found = {hit.t, hit.id};
+      return opaque;
+    });
+    return found;
   }
 };
 
@@ -71,8 +90,10 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
     query.box_hi[k] = tree.box.hi[k];
   }
   query.context = &search;
-  query.decide = [](void* context, std::size_t ray, std::uint32_t block, std::uint32_t lanes) {
-    return static_cast<Search*>(context)->decide(ray, block, lanes);
+  query.decide = [](void* context, std::size_t ray, const LaneShear& shear, std::uint32_t block,
+                    std::uint32_t lanes) {
+    auto& asked = *static_cast<Search*>(context);
+    return asked.decide(ray, sheared_ray(asked.rays[ray], shear), block, lanes);
   };
   LaneCounts counts{};
   kernel(query, counts);

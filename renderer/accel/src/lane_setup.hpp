@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lane_leaf.hpp"
 #include "lane_query.hpp"
 #include "walk_limits.hpp"
 
@@ -15,13 +16,10 @@ constexpr float kLargestFloat = 0x1.fffffep127F;
 
 /// Rays that wait for a lane.
 template <class V>
-struct alignas(64) ReadyRays {
+struct ReadyRays : LeafRays<V::kWidth> {
   static constexpr std::size_t kW = V::kWidth;
-  float o[3][kW], inv_d[3][kW];
   float slack[kW], t0[kW], t1[kW];
-  float t_min[kW], t_max[kW];
-  float sx[kW], sy[kW];   ///< slopes along the main axis
-  std::uint32_t main_axis[kW];
+  std::uint32_t backward[3];  ///< 1 for an axis along which the rays go down, if they go together
 };
 
 template <class V>
@@ -31,17 +29,22 @@ class RaySource {
   using M = typename V::M;
   static constexpr std::size_t kW = V::kWidth;
 
-  explicit RaySource(const LaneQuery& query) : query_(query) {
+  RaySource(const LaneQuery& query, bool together) : query_(query), together_(together) {
     for (std::size_t k = 0; k < 8; ++k) {
       for (std::size_t i = 0; i < kW; ++i) raw_[k][i] = 0.0F;
     }
   }
 
   /// The next ray that meets the root's box: its place in ready(), and its index. False at the end.
-  bool next(std::size_t& place, std::size_t& index) {
+  /// Rays that go together are first given to walk_together(ready, lanes, index of lane 0), which
+  /// gives those that are left.
+  template <typename Together>
+  bool next(std::size_t& place, std::size_t& index, Together&& walk_together) {
     while (waiting_ == 0) {
       if (next_ray_ == query_.ray_count) return false;
       prepare_some();
+      begun_ = together_ && go_together();
+      if (begun_) waiting_ = walk_together(ready_, waiting_, first_);
     }
     place = static_cast<std::size_t>(__builtin_ctz(waiting_));
     waiting_ &= waiting_ - 1;
@@ -50,6 +53,8 @@ class RaySource {
   }
 
   [[nodiscard]] const ReadyRays<V>& ready() const { return ready_; }
+  /// True when the ray that next() gave was walked together with others first.
+  [[nodiscard]] bool begun() const { return begun_; }
   [[nodiscard]] std::uint64_t unusable() const { return unusable_; }
 
  private:
@@ -68,6 +73,23 @@ class RaySource {
     next_ray_ += n;
   }
 
+  // Enough rays with the same signs of direction and the same main axis.
+  bool go_together() {
+    if (static_cast<std::size_t>(__builtin_popcount(waiting_)) * 2 < kW) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const M backward =
+          V::lt(V::turn_sign(V::set1(1.0F), V::load(ready_.inv_d[k])), V::set1(0.0F));
+      const std::uint32_t lanes = V::bits(backward) & waiting_;
+      if (lanes != 0 && lanes != waiting_) return false;
+      ready_.backward[k] = lanes != 0 ? 1U : 0U;
+    }
+    const std::uint64_t axis = ready_.shear[__builtin_ctz(waiting_)].main_axis;
+    for (std::uint32_t rest = waiting_; rest != 0; rest &= rest - 1) {
+      if (ready_.shear[__builtin_ctz(rest)].main_axis != axis) return false;
+    }
+    return true;
+  }
+
   // The main axis and the slopes; a bit for every ray that can hit something.
   std::uint32_t shear() {
     const F d[3] = {V::load(raw_[4]), V::load(raw_[5]), V::load(raw_[6])};
@@ -79,9 +101,11 @@ class RaySource {
     auto axis = V::blend(is_y, V::set1(2U), V::set1(1U));
     axis = V::blend(is_x, axis, V::set1(0U));
     const F dz = V::select(axis, d[0], d[1], d[2]);
-    V::store(ready_.main_axis, axis);
-    V::store(ready_.sx, V::div(V::select(axis, d[1], d[2], d[0]), dz));
-    V::store(ready_.sy, V::div(V::select(axis, d[2], d[0], d[1]), dz));
+    const F dx = V::select(axis, d[1], d[2], d[0]);
+    const F dy = V::select(axis, d[2], d[0], d[1]);
+    V::store(ready_.sx, V::div(dx, dz));
+    V::store(ready_.sy, V::div(dy, dz));
+    keep_shear(axis, dx, dy, dz);
     const F most = V::set1(kMaxDirection);
     M usable = V::both(V::both(V::le(ax, most), V::le(ay, most)), V::le(az, most));
     usable = V::both(usable, V::le(V::set1(kMinDirection), V::abs(dz)));
@@ -91,6 +115,17 @@ class RaySource {
       V::store(ready_.inv_d[k], V::div(V::set1(1.0F), d[k]));
     }
     return V::bits(usable);
+  }
+
+  // The slopes in double, as shear_ray has them.
+  void keep_shear(typename V::I axis, F dx, F dy, F dz) {
+    alignas(64) std::uint32_t axes[kW];
+    alignas(64) double sx[kW], sy[kW], inv_dz[kW];
+    V::store(axes, axis);
+    V::store_quotients(sx, dx, dz);
+    V::store_quotients(sy, dy, dz);
+    V::store_quotients(inv_dz, V::set1(1.0F), dz);
+    for (std::size_t i = 0; i < kW; ++i) ready_.shear[i] = {sx[i], sy[i], inv_dz[i], axes[i]};
   }
 
   // The interval within the root's box; a bit for every ray where it is not empty.
@@ -105,6 +140,8 @@ class RaySource {
     F t1 = V::load(raw_[7]);
     V::store(ready_.t_min, t0);
     V::store(ready_.t_max, t1);
+    V::store(ready_.limit, V::set1(kEndless));
+    V::store(ready_.known, V::set1(kLaneNoHit));
     for (std::size_t k = 0; k < 3; ++k) {
       const F o = V::load(raw_[k]);
       const F inv = V::load(ready_.inv_d[k]);
@@ -129,6 +166,8 @@ class RaySource {
   const LaneQuery& query_;
   std::size_t next_ray_ = 0, first_ = 0;
   std::uint32_t waiting_ = 0;
+  const bool together_;  ///< whether rays may be walked together
+  bool begun_ = false;
   std::uint64_t unusable_ = 0;
   alignas(64) float raw_[8][kW];
   ReadyRays<V> ready_;

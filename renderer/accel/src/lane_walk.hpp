@@ -3,6 +3,9 @@
 // one ray, against all triangles of a block at once. Several groups take turns, so that the nodes
 // that one waits for arrive while others work.
 //
+// Closest-hit rays that go together for long begin as a packet, see lane_packet.hpp. Any-hit rays do
+// not: in lanes they are faster, for memory is waited for by many at once.
+//
 // Each ray sees the same cells in the same order with the same roundings as in the scalar walk, so
 // counts of steps, visits and blocks are equal, too.
 //
@@ -12,7 +15,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lane_filter.hpp"
+#include "lane_leaf.hpp"
+#include "lane_packet.hpp"
 #include "lane_query.hpp"
 #include "lane_setup.hpp"
 #include "walk_limits.hpp"
@@ -20,24 +24,17 @@
 namespace raykiln::render {
 namespace {
 
-constexpr float kEndless = __builtin_inff();
-
 struct StackEntry {
   std::uint32_t node;
   float t0, t1, unused;
 };
 
 template <class V>
-struct alignas(64) LaneGroup {
+struct LaneGroup : LeafRays<V::kWidth> {
   static constexpr std::size_t kW = V::kWidth;
   std::uint32_t node[kW];
-  float t0[kW], t1[kW];
+  float t0[kW], t1[kW], slack[kW];
   std::uint32_t stack_size[kW];  ///< in bytes
-  float o[3][kW], inv_d[3][kW], slack[kW];
-  float limit[kW];          ///< cells entered beyond need no visit
-  std::uint32_t known[kW];  ///< a triangle that need not be decided again
-  float sx[kW], sy[kW], t_min[kW], t_max[kW];
-  std::uint32_t main_axis[kW];
   std::uint32_t leaf_count[kW], leaf_place[kW];  ///< blocks of the leaf that waits for its visit
   std::size_t ray[kW];
   std::uint32_t active;   ///< a bit for every lane that has a ray
@@ -51,7 +48,8 @@ template <class V, class B, class Twice, int kLeafWidth, bool kAnyHit, std::size
 class LaneWalk {
  public:
   LaneWalk(const LaneQuery& query, LaneCounts& counts)
-      : query_(query), counts_(counts), source_(query) {}
+      : query_(query), counts_(counts), source_(query, !kAnyHit), leaf_(query, counts),
+        packet_(query, counts, leaf_) {}
 
   void run() {
     std::uint32_t active = 0;
@@ -76,7 +74,7 @@ class LaneWalk {
   using I = typename V::I;
   using M = typename V::M;
   using Group = LaneGroup<V>;
-  static constexpr bool kTwice = Twice::kWidth == 2 * B::kWidth;
+  using Leaf = LeafVisit<V, B, Twice, kLeafWidth, kAnyHit>;
   static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
   static constexpr std::uint32_t kEntryBytes = sizeof(StackEntry);
   static constexpr std::uint32_t kEmptyLeaf = 1;  ///< nodes[1] of every tree
@@ -96,14 +94,25 @@ class LaneWalk {
 
   // Gives the lane the next ray, or parks it.
   [[gnu::noinline]] void take_ray(Group& group, std::uint32_t lane) {
-    std::size_t place = 0;
-    std::size_t index = 0;
-    group.stack_size[lane] = 0;
-    if (!source_.next(place, index)) {
-      group.node[lane] = kEmptyLeaf;
-      group.active &= ~(1U << lane);
-      return;
-    }
+    do {
+      std::size_t place = 0;
+      const bool found = source_.next(
+          place, group.ray[lane], [this](ReadyRays<V>& rays, std::uint32_t lanes, std::size_t i) {
+            return packet_.walk(rays, lanes, i);
+          });
+      group.stack_size[lane] = 0;
+      if (!found) {
+        group.node[lane] = kEmptyLeaf;
+        group.active &= ~(1U << lane);
+        return;
+      }
+      begin(group, lane, place);
+    } while (source_.begun() && !pop(group, lane));
+    group.active |= 1U << lane;
+  }
+
+  // Puts a ray in a lane; one that was walked with others gets the cells left to it on the stack.
+  void begin(Group& group, std::uint32_t lane, std::size_t place) const {
     const ReadyRays<V>& ready = source_.ready();
     for (std::size_t k = 0; k < 3; ++k) {
       group.o[k][lane] = ready.o[k][place];
@@ -116,12 +125,13 @@ class LaneWalk {
     group.sy[lane] = ready.sy[place];
     group.t_min[lane] = ready.t_min[place];
     group.t_max[lane] = ready.t_max[place];
-    group.main_axis[lane] = ready.main_axis[place];
-    group.limit[lane] = kEndless;
-    group.known[lane] = kLaneNoHit;
-    group.ray[lane] = index;
+    group.limit[lane] = ready.limit[place];
+    group.known[lane] = ready.known[place];
+    group.shear[lane] = ready.shear[place];
     group.node[lane] = 0;
-    group.active |= 1U << lane;
+    if (!source_.begun()) return;
+    const auto at = static_cast<std::uint32_t>(place);
+    group.stack_size[lane] = packet_.hand_over(at, group.stack[lane]) * kEntryBytes;
   }
 
   // A leaf with triangles is visited in the turn after the one that finds it: its block has the
@@ -214,71 +224,15 @@ class LaneWalk {
 
   // True when the ray is done.
   bool visit_leaf(Group& group, std::uint32_t lane) {
-    const float* const first = query_.blocks + kBlockFloats * group.leaf_place[lane];
-    const std::uint32_t count = group.leaf_count[lane];
-    std::uint32_t b = 0;
-    if constexpr (kTwice) {
-      if (count > 1) {
-        const auto ray = filter_ray<Twice>(group, lane);
-        for (; b + 1 < count; b += 2) {
-          const auto both = candidates<Twice>(ray, first + kBlockFloats * b, group.known[lane]);
-          ++counts_.block_tests;
-          if (decide(group, lane, b, both & 0xFFU)) return true;
-          ++counts_.block_tests;
-          if (decide(group, lane, b + 1, both >> 8)) return true;
-        }
-      }
-      if (b == count) return false;
-    }
-    const auto ray = filter_ray<B>(group, lane);
-    for (; b < count; ++b) {
-      ++counts_.block_tests;
-      const float* const block = first + kBlockFloats * b;
-      std::uint32_t found = 0;
-      for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
-        found |= candidates<B>(ray, block + at, group.known[lane]) << at;
-      }
-      if (decide(group, lane, b, found)) return true;
-    }
-    return false;
-  }
-
-  // The last word on the candidates of the b-th block of the lane's leaf. True when the ray is done.
-  bool decide(Group& group, std::uint32_t lane, std::uint32_t b, std::uint32_t found) {
-    if (found == 0) return false;
-    const LaneBest best =
-        query_.decide(query_.context, group.ray[lane], group.leaf_place[lane] + b, found);
-    if (kAnyHit) return best.id != kLaneNoHit;
-    group.limit[lane] = best.t;
-    if (best.t < group.t_max[lane]) group.t_max[lane] = best.t;
-    group.known[lane] = best.id;
-    return false;
-  }
-
-  template <class L>
-  static FilterRay<L> filter_ray(const Group& group, std::uint32_t lane) {
-    const std::size_t z = group.main_axis[lane];
-    const std::size_t x = z == 2 ? 0 : z + 1;
-    const std::size_t y = x == 2 ? 0 : x + 1;
-    return {L::set1(group.o[x][lane]), L::set1(group.o[y][lane]), L::set1(group.o[z][lane]),
-            L::set1(group.sx[lane]),   L::set1(group.sy[lane]),   L::set1(group.inv_d[z][lane]),
-            L::set1(group.t_min[lane]), L::set1(group.t_max[lane]),
-            x * kLeafWidth,            y * kLeafWidth,            z * kLeafWidth};
-  }
-
-  // Those of a block, or of the part of it that begins at `block`, that have to be decided.
-  template <class L>
-  static std::uint32_t candidates(const FilterRay<L>& ray, const float* block,
-                                  std::uint32_t known) {
-    constexpr std::size_t kIds = 9 * kLeafWidth;
-    const std::uint32_t lanes = may_be_hit<L, kLeafWidth>(ray, block);
-    if (lanes == 0) return 0;
-    return lanes & worth_deciding<L>(reinterpret_cast<const std::uint32_t*>(block + kIds), known);
+    return leaf_.one_ray(group, lane, group.ray[lane], group.leaf_place[lane],
+                         group.leaf_count[lane]);
   }
 
   const LaneQuery& query_;
   LaneCounts& counts_;
   RaySource<V> source_;
+  Leaf leaf_;
+  PacketWalk<V, Leaf> packet_;
   Group groups_[kGroups];
 };
 

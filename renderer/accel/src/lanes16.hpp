@@ -19,6 +19,14 @@ struct Lanes16 {
   static I load(const std::uint32_t* p) { return _mm512_load_si512(p); }
   static void store(float* p, F v) { _mm512_store_ps(p, v); }
   static void store(std::uint32_t* p, I v) { _mm512_store_si512(p, v); }
+  /// a / b of every lane, in double.
+  static void store_quotients(double* p, F a, F b) {
+    const auto eight = [](F v, int half) {
+      return _mm512_cvtps_pd(half == 0 ? _mm512_castps512_ps256(v) : _mm512_extractf32x8_ps(v, 1));
+    };
+    _mm512_store_pd(p, _mm512_div_pd(eight(a, 0), eight(b, 0)));
+    _mm512_store_pd(p + 8, _mm512_div_pd(eight(a, 1), eight(b, 1)));
+  }
   static F set1(float v) { return _mm512_set1_ps(v); }
   static I set1(std::uint32_t v) { return _mm512_set1_epi32(static_cast<int>(v)); }
 

@@ -23,6 +23,14 @@ struct Lanes8 {
   static void store(std::uint32_t* p, I v) {
     _mm256_store_si256(reinterpret_cast<__m256i*>(p), v);
   }
+  /// a / b of every lane, in double.
+  static void store_quotients(double* p, F a, F b) {
+    const auto four = [](F v, int half) {
+      return _mm256_cvtps_pd(half == 0 ? _mm256_castps256_ps128(v) : _mm256_extractf128_ps(v, 1));
+    };
+    _mm256_store_pd(p, _mm256_div_pd(four(a, 0), four(b, 0)));
+    _mm256_store_pd(p + 4, _mm256_div_pd(four(a, 1), four(b, 1)));
+  }
   static F set1(float v) { return _mm256_set1_ps(v); }
   static I set1(std::uint32_t v) { return _mm256_set1_epi32(static_cast<int>(v)); }
 

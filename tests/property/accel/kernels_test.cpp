@@ -71,6 +71,66 @@ TEST(Kernels, CountWhatTheScalarWalkCounts) {
   }
 }
 
+// Rays that go together for a while: from one point or side by side, spread a little or a lot, also
+// along the axes, where directions have zeros of either sign.
+std::vector<Ray> beams(const render::KdTree& tree, std::uint64_t seed) {
+  TestRandom random(seed);
+  const render::Bounds3f box = render::bounds(tree);
+  const float size = render::length(box.hi - box.lo);
+  std::vector<Ray> rays;
+  for (int beam = 0; beam < 40; ++beam) {
+    const float spread = std::ldexp(1.0F, -static_cast<int>(random.below(12)));
+    const Vec3f target = box.lo + (box.hi - box.lo) * random.in_box(0.0F, 1.0F);
+    Vec3f along = random.direction();
+    if (beam % 5 == 0) along = Vec3f(0.0F, beam % 2 == 0 ? 1.0F : -1.0F, -0.0F);
+    const bool side_by_side = random.below(2) == 0;
+    const std::size_t n = 1 + random.below(64);
+    for (std::size_t i = 0; i < n; ++i) {
+      Ray ray;
+      const Vec3f aside = random.direction() * (random.below(4) == 0 ? 0.0F : spread);
+      ray.o = target - along * size + (side_by_side ? aside * size : Vec3f(0.0F));
+      ray.d = side_by_side ? along : along + aside;
+      if (random.below(8) == 0) ray.t_max = size * random.uniform(0.5F, 1.5F);
+      if (random.below(8) == 0) ray.t_min = size * random.uniform(0.5F, 1.2F);
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+TEST(Kernels, RaysThatGoTogetherAndPart) {
+  std::uint64_t seed = 50;
+  for (const TestMesh& mesh : meshes()) {
+    std::vector<std::uint8_t> opaque(mesh.triangles.size());
+    for (std::size_t i = 0; i < opaque.size(); ++i) opaque[i] = i % 3 == 0 ? 1 : 0;
+    for (const int width : {8, 16}) {
+      render::BuildParams params;
+      params.leaf_width = width;
+      params.k_i = width == 8 ? 1.0 : 0.25;
+      render::TriangleView view = mesh.view();
+      if (width == 8) view.opaque = opaque;
+      render::SerialTaskRunner runner;
+      const auto tree = render::build_kdtree(view, params, runner);
+      const auto rays = beams(*tree, ++seed);
+      expect_same(*tree, rays);
+      const auto expected = closest(*tree, rays, Traversal::kBruteForce);
+      std::vector<render::HitOrder> after;  // again, beyond the first hit
+      for (const Hit& hit : expected) {
+        after.push_back(hit.id == render::kNoHit ? render::HitOrder{}
+                                                 : render::HitOrder{hit.t, hit.id});
+      }
+      std::vector<Hit> beyond(rays.size());
+      std::vector<Hit> found(rays.size());
+      render::closest_hits(*tree, rays, beyond, after, Traversal::kBruteForce);
+      for (const Traversal walk : walks()) {
+        EXPECT_EQ(count_differences(rays, closest(*tree, rays, walk), expected), 0U);
+        render::closest_hits(*tree, rays, found, after, walk);
+        EXPECT_EQ(count_differences(rays, found, beyond), 0U);
+      }
+    }
+  }
+}
+
 TEST(Kernels, AnyLengthOfStream) {
   const TestMesh mesh = soup(600, 2, 2.0F);
   const auto tree = build(mesh);

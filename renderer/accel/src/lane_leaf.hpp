@@ -1,0 +1,171 @@
+// What the kernels do at a leaf: sort out the triangles that may be hit and ask for the last word on
+// them. Either one ray against the triangles of a block at once, or one triangle against the rays of
+// a packet at once. Internal linkage only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "lane_filter.hpp"
+#include "lane_query.hpp"
+
+namespace raykiln::render {
+namespace {
+
+constexpr float kEndless = __builtin_inff();
+
+/// What leaves need to know of rays, a lane each; part of LaneGroup and ReadyRays.
+template <std::size_t kW>
+struct alignas(64) LeafRays {
+  float o[3][kW], inv_d[3][kW];
+  float sx[kW], sy[kW], t_min[kW], t_max[kW];  ///< t_max: not beyond the best hit so far
+  float limit[kW];          ///< cells entered beyond need no visit
+  std::uint32_t known[kW];  ///< a triangle that need not be decided again
+  LaneShear shear[kW];
+};
+
+/// Lanes that hold the same triangle: the first one of a row.
+template <class V>
+struct Repeated : V {
+  static typename V::F load(const float* p) { return V::set1(*p); }
+};
+
+/// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth. Twice: lanes of two
+/// neighbouring blocks, or B again.
+template <class V, class B, class Twice, int kLeafWidth, bool kAnyHit>
+class LeafVisit {
+ public:
+  using Rays = LeafRays<V::kWidth>;
+
+  LeafVisit(const LaneQuery& query, LaneCounts& counts) : query_(query), counts_(counts) {}
+
+  /// The ray `index`, which is in `lane`, at a leaf of `count` blocks from `place` on. True when it
+  /// is done.
+  bool one_ray(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
+               std::uint32_t count) const {
+    const float* const first = query_.blocks + kBlockFloats * place;
+    std::uint32_t b = 0;
+    if constexpr (kTwice) {
+      if (count > 1) {
+        const auto ray = filter_ray<Twice>(rays, lane);
+        for (; b + 1 < count; b += 2) {
+          const auto both = candidates<Twice>(ray, first + kBlockFloats * b, rays.known[lane]);
+          ++counts_.block_tests;
+          if (decide(rays, lane, index, place + b, both & 0xFFU)) return true;
+          ++counts_.block_tests;
+          if (decide(rays, lane, index, place + b + 1, both >> 8)) return true;
+        }
+      }
+      if (b == count) return false;
+    }
+    const auto ray = filter_ray<B>(rays, lane);
+    for (; b < count; ++b) {
+      ++counts_.block_tests;
+      const float* const block = first + kBlockFloats * b;
+      std::uint32_t found = 0;
+      for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
+        found |= candidates<B>(ray, block + at, rays.known[lane]) << at;
+      }
+      if (decide(rays, lane, index, place + b, found)) return true;
+    }
+    return false;
+  }
+
+  /// The rays of `lanes`, all with the same main axis, the first of which is `index` + its lane.
+  /// A bit for each that is done.
+  std::uint32_t packet(Rays& rays, std::uint32_t lanes, std::size_t index, std::uint32_t place,
+                       std::uint32_t count) const {
+    const auto n = static_cast<std::uint32_t>(__builtin_popcount(lanes));
+    const std::uint32_t tests =
+        kTwice ? (count + 1) / 2 : count * static_cast<std::uint32_t>(kLeafWidth / B::kWidth);
+    std::uint32_t done = 0;
+    if (n * tests < kTrianglesABlock * count) {
+      for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        if (one_ray(rays, lane, index + lane, place, count)) done |= 1U << lane;
+      }
+      return done;
+    }
+    const std::size_t axis = rays.shear[__builtin_ctz(lanes)].main_axis;
+    for (std::uint32_t b = 0; b < count && lanes != done; ++b) {
+      counts_.block_tests += static_cast<std::uint32_t>(__builtin_popcount(lanes & ~done));
+      done |= packet_block(rays, lanes & ~done, axis, index, place + b);
+    }
+    return done;
+  }
+
+ private:
+  static constexpr bool kTwice = Twice::kWidth == 2 * B::kWidth;
+  static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
+  static constexpr std::size_t kIds = 9 * kLeafWidth;
+  /// About so many lanes of a block hold a triangle.
+  static constexpr std::uint32_t kTrianglesABlock = 3 * kLeafWidth / 4;
+
+  std::uint32_t packet_block(Rays& rays, std::uint32_t lanes, std::size_t axis,
+                             std::size_t index, std::uint32_t place) const {
+    using R = Repeated<V>;
+    const float* const block = query_.blocks + kBlockFloats * place;
+    const auto* const ids = reinterpret_cast<const std::uint32_t*>(block + kIds);
+    FilterRay<R> ray = filter_rays<R>(rays, axis);
+    std::uint32_t done = 0;
+    for (std::uint32_t i = 0; i < kLeafWidth && ids[i] != kLaneNoHit; ++i) {
+      std::uint32_t found = may_be_hit<R, kLeafWidth>(ray, block + i) & lanes & ~done;
+      if (found == 0) continue;
+      found &= ~V::bits(V::eq(V::load(rays.known), V::set1(ids[i])));
+      for (std::uint32_t rest = found; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        if (decide(rays, lane, index + lane, place, 1U << i)) done |= 1U << lane;
+      }
+      ray.t_max = V::load(rays.t_max);
+    }
+    return done;
+  }
+
+  // The last word on the candidates of a block. True when the ray is done.
+  bool decide(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t block,
+              std::uint32_t found) const {
+    if (found == 0) return false;
+    const LaneBest best = query_.decide(query_.context, index, rays.shear[lane], block, found);
+    if (kAnyHit) return best.id != kLaneNoHit;
+    rays.limit[lane] = best.t;
+    if (best.t < rays.t_max[lane]) rays.t_max[lane] = best.t;
+    rays.known[lane] = best.id;
+    return false;
+  }
+
+  template <class L>
+  static FilterRay<L> filter_ray(const Rays& rays, std::uint32_t lane) {
+    const std::size_t z = rays.shear[lane].main_axis;
+    const std::size_t x = z == 2 ? 0 : z + 1;
+    const std::size_t y = x == 2 ? 0 : x + 1;
+    return {L::set1(rays.o[x][lane]),  L::set1(rays.o[y][lane]), L::set1(rays.o[z][lane]),
+            L::set1(rays.sx[lane]),    L::set1(rays.sy[lane]),   L::set1(rays.inv_d[z][lane]),
+            L::set1(rays.t_min[lane]), L::set1(rays.t_max[lane]),
+            x * kLeafWidth,            y * kLeafWidth,           z * kLeafWidth};
+  }
+
+  template <class R>
+  static FilterRay<R> filter_rays(const Rays& rays, std::size_t z) {
+    const std::size_t x = z == 2 ? 0 : z + 1;
+    const std::size_t y = x == 2 ? 0 : x + 1;
+    return {V::load(rays.o[x]),  V::load(rays.o[y]), V::load(rays.o[z]),
+            V::load(rays.sx),    V::load(rays.sy),   V::load(rays.inv_d[z]),
+            V::load(rays.t_min), V::load(rays.t_max),
+            x * kLeafWidth,      y * kLeafWidth,     z * kLeafWidth};
+  }
+
+  // Those of a block, or of the part of it that begins at `block`, that have to be decided.
+  template <class L>
+  static std::uint32_t candidates(const FilterRay<L>& ray, const float* block,
+                                  std::uint32_t known) {
+    const std::uint32_t lanes = may_be_hit<L, kLeafWidth>(ray, block);
+    if (lanes == 0) return 0;
+    return lanes & worth_deciding<L>(reinterpret_cast<const std::uint32_t*>(block + kIds), known);
+  }
+
+  const LaneQuery& query_;
+  LaneCounts& counts_;
+};
+
+}  // namespace
+}  // namespace raykiln::render
