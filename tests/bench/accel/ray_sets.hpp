@@ -43,7 +43,7 @@ struct SurfacePoint {
   render::Vec3f position, normal;  ///< the normal on the side where the ray came from
 };
 
-/// Where rays met something, lifted a little off the surface.
+/// Where rays met something, lifted off the surface by more than floats round there.
 inline std::vector<SurfacePoint> surface_points(const test::TestMesh& mesh,
                                                 const std::vector<render::Ray>& rays,
                                                 const std::vector<render::Hit>& hits) {
@@ -56,7 +56,8 @@ inline std::vector<SurfacePoint> surface_points(const test::TestMesh& mesh,
     if (!(render::dot(n, n) > 0.5F)) continue;
     const render::Vec3f at =
         p[0] * (1.0F - hits[i].u - hits[i].v) + p[1] * hits[i].u + p[2] * hits[i].v;
-    points.push_back({at + n * 1e-5F, n});
+    const float largest = std::max({1.0F, std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+    points.push_back({at + n * (1e-5F * largest), n});
   }
   return points;
 }
