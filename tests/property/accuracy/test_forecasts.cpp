@@ -115,6 +115,7 @@ TEST_P(Rooms, ForecastsHold) {
   std::printf("%s: %.0f of %.0f forecasts held; from %d samples on %.0f of %.0f too wide, %.0f flagged\n",
               GetParam().name, hits, scored, static_cast<int>(kSampleFloor), wide, late, tails);
   EXPECT_GE(scored, 2 * seeds);
+  if (tests::kSanitized) return;  // 2 seeds say nothing of rates
   EXPECT_GE(hits, 0.9 * scored);
   EXPECT_EQ(wide, 0);
 }
