@@ -1,6 +1,7 @@
 """What ends a job: samples, time or error; and what it says of its accuracy."""
 
 from support.api import problem
+from support.image_files import read_png
 
 TINY = {"width": 32, "height": 24, "tile": 8}
 
@@ -34,6 +35,22 @@ def test_a_job_by_samples_knows_its_error(api, samples):
     assert "error_rough" in rough["accuracy"]["notices"]
     unknown = ended(api, samples["box"], {"samples": 1})
     assert unknown["accuracy"]["grade"] == "unknown" and unknown["accuracy"]["error"] is None
+
+
+def test_adaptive_jobs_say_so_everywhere_and_are_made_again(api, samples):
+    job = ended(api, samples["box"], {"error": 0.05}, adaptive=True, width=64, height=48)
+    assert job["done_by"] == "error" and "adaptive" in job["accuracy"]["notices"]
+    assert job["request"]["adaptive"] is True and job["request"]["tile"] == 16
+    exr = api.image(job["id"], "exr").content[:2000]
+    assert b"raykiln:adaptive" in exr and b"adaptive sampling" in api.image(job["id"]).content
+    each = job["tile_samples"]
+    assert len(each) == 12 and min(each) >= 64
+    again = ended(api, samples["box"], {"tile_samples": each}, tile=16, width=64, height=48)
+    assert "adaptive" not in again["accuracy"]["notices"]
+    assert b"adaptive sampling" not in api.image(again["id"]).content
+    assert (read_png(api.image(again["id"]).content).pixels == read_png(api.image(job["id"]).content).pixels).all()
+    body = problem(api.submit(samples["box"], expect=(422,), **{**TINY, "adaptive": True, "stop": {"samples": 8}}), 422, "invalid_request")
+    assert [error["pointer"] for error in body["errors"]] == ["/adaptive"]
 
 
 def test_stops_that_cannot_be(api, samples):

@@ -30,6 +30,7 @@ export interface JobRequest {
   direction_sampling?: string;
   emitter_sampling?: boolean;
   sampler?: string;
+  adaptive?: boolean;
   effects?: EffectChoice;
   tile?: number;
   priority?: number;

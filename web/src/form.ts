@@ -8,7 +8,7 @@ export type FormKey =
   | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
   | "width" | "height" | "samples" | "error" | "seconds" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
-  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | "sampler"
+  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | "sampler" | "adaptive"
   | "effects" | "without" | OverrideKey;
 
 /** Switches against the named light model; empty: as the model has it. */
@@ -30,7 +30,7 @@ export const kDefaultForm: FormValues = {
   scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40",
   width: "640", height: "480", samples: "64", error: "", seconds: "", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
-  light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true", sampler: "random",
+  light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true", sampler: "random", adaptive: "false",
   effects: "auto", without: "",
   phong: "", fresnel: "", radiance_scaling: "", diffuse_sampling: "", roulette: "",
 };
@@ -83,6 +83,8 @@ export const kFields: readonly FieldSpec[] = [
     choices: [["true", "On"], ["false", "Off"]] },
   { key: "sampler", pointer: "/sampler", label: "Sampler", hint: "", kind: "choice", group: "more",
     choices: [["random", "Random numbers"], ["sobol", "Sobol points (less noise)"]] },
+  { key: "adaptive", pointer: "/adaptive", label: "Samples go", hint: "", kind: "choice", group: "more",
+    choices: [["false", "Everywhere alike"], ["true", "Where the error is (needs error or seconds)"]] },
   { key: "effects", pointer: "/effects", label: "Effects", hint: "", kind: "choice", group: "more",
     choices: [["auto", "What the scene calls for"], ["all", "All (same picture, more work)"], [kWithout, "Leave some out (approximation)…"]] },
   { key: "without", pointer: "/effects/without", label: "Leave out", hint: "", kind: "effects", group: "more" },
@@ -171,6 +173,7 @@ export function to_request(values: FormValues): JobRequest {
     direction_sampling: values.direction_sampling,
     emitter_sampling: values.emitter_sampling === "true",
     sampler: values.sampler,
+    ...(values.adaptive === "true" ? { adaptive: true } : {}),
     effects: values.effects === kWithout ? { without: names(values.without) } : values.effects,
     tile: number("tile"),
     priority: number("priority"),
@@ -212,7 +215,7 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   const values = { ...kDefaultForm, scene: request.scene, name: request.name ?? job.name };
   const plain: FormKey[] = [
     "width", "height", "max_depth", "branches", "seed", "tile", "priority",
-    "light_model", "pixel_mode", "direction_sampling", "emitter_sampling", "sampler",
+    "light_model", "pixel_mode", "direction_sampling", "emitter_sampling", "sampler", "adaptive",
   ];
   const bag = request as unknown as Record<string, unknown>;
   for (const key of plain) if (bag[key] !== undefined) values[key] = String(bag[key]);

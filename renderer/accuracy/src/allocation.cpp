@@ -102,4 +102,17 @@ std::vector<std::uint64_t> allocate_samples(const Film& film, double mean_sample
   return samples;
 }
 
+std::vector<std::uint64_t> cell_samples(const Film& film) {
+  const int across = (film.width() + kCellSide - 1) / kCellSide, down = (film.height() + kCellSide - 1) / kCellSide;
+  std::vector<std::uint64_t> samples(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+  std::size_t i = 0;
+  for (int y = 0; y < film.height(); ++y) {
+    for (int x = 0; x < film.width(); ++x, ++i) {
+      auto& most = samples[static_cast<std::size_t>(y / kCellSide * across + x / kCellSide)];
+      most = std::max(most, film.pixel(i).samples());
+    }
+  }
+  return samples;
+}
+
 }  // namespace raykiln::render

@@ -75,6 +75,7 @@ std::map<std::string, std::string> exr_attributes(const JobImage& image, const s
           {"raykiln:light_model", light_model_label(image.request.light_model, image.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(image.request.seed)},
           {"raykiln:sampler", std::string(name(image.request.sampler))},
+          {"raykiln:adaptive", image.request.adaptive ? "true" : "false"},
           {"raykiln:samples", shortest(image.samples_per_pixel)},
           {"raykiln:max_depth", std::to_string(depth_limit(image.request))},
           {"raykiln:effects", effects.lines.empty() ? image.request.effects : effects.label},
@@ -118,10 +119,17 @@ render::ValueRange map_range(const std::vector<float>& values, const std::string
   return render::value_range(values, linear ? render::ValueScale::kLinear : render::ValueScale::kLog);
 }
 
+/// What every PNG says of itself; empty: nothing to say.
+std::string note_of(const JobImage& image) {
+  std::string note = approximation_note(image.effects);
+  if (image.request.adaptive) note.append(note.empty() ? "" : "; ").append("adaptive sampling");
+  return note;
+}
+
 Result<std::string> encode(const JobImage& image, const ImageQuery& query,
                            const std::string& version) {
   std::variant<render::Bytes, render::EncodeError> encoded;
-  const std::string note = approximation_note(image.effects);
+  const std::string note = note_of(image);
   const auto effort = image.is_final ? render::PngEffort::kSmall : render::PngEffort::kQuick;
   if (query.half) {
     encoded = encode_half(image, version);

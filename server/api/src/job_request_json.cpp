@@ -182,6 +182,8 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
 void read_job(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
   read_picture(reader, limits, errors, request);
   read_stop(reader, limits, errors, request.stop, StopOf::kJob);
+  request.adaptive = reader.boolean("adaptive").value_or(false);
+  if (request.adaptive) request.tile = kAdaptiveTile;
   request.reuse = reader.boolean("reuse").value_or(false);
 }
 
@@ -252,6 +254,7 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"effects", effects_value(request.effects)},
           {"tile", request.tile},
           {"priority", request.priority},
+          {"adaptive", request.adaptive},
           {"reuse", request.reuse}};
 }
 
@@ -269,6 +272,7 @@ std::string extension_json(const Extension& extension) {
 std::string quote_request_json(const JobRequest& request, double pilot_seconds) {
   auto value = job_request_value(request);
   value.erase("stop");
+  value.erase("adaptive");
   value.erase("reuse");
   value["pilot_seconds"] = pilot_seconds;
   return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

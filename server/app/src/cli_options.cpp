@@ -231,13 +231,17 @@ void add_accuracy(CLI::App& app, CliOptions& options) {
   accuracy->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
 }
 
+void add_adaptive(CLI::App& command, JobRequest& request) {
+  command.add_flag("--adaptive", request.adaptive,
+                   "samples go where the error is: needs --error or --seconds; marked in every output");
+}
+
 void add_commands(CLI::App& app, CliOptions& options) {
   auto* render = app.add_subcommand("render", "render a scene here, without a server");
   add_picture_options(*render, options);
   add_output(*render, options, true);
   render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
-  render->add_flag("--adaptive", options.adaptive,
-                   "samples go where the error is: needs --error or --seconds; marked in every output");
+  add_adaptive(*render, options.picture.request);
 
   auto* effects = app.add_subcommand("effects", "list what a scene calls for, what is simulated, and why");
   add_picture_options(*effects, options);
@@ -258,6 +262,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   add_batch(app, options);
   auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
   add_picture_options(*submit, options);
+  add_adaptive(*submit, options.picture.request);
   add_output(*submit, options, false);
   submit->add_flag("--wait", options.wait, "follow the job to its end (implied by -o)");
   submit->add_option("--name", options.picture.request.name, "of the job, for people");
@@ -326,7 +331,8 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
     parsed.exit_code = to_int(ExitCode::kUsage);
   }
   const StopRule& stop = options.picture.request.stop;
-  if (options.adaptive && !stop.error && !stop.seconds) {
+  if (options.picture.request.adaptive) options.picture.request.tile = kAdaptiveTile;
+  if (options.picture.request.adaptive && !stop.error && !stop.seconds) {
     std::cerr << "raykiln: --adaptive needs --error or --seconds to stop at\n";
     parsed.exit_code = to_int(ExitCode::kUsage);
   }

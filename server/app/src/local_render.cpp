@@ -7,7 +7,6 @@
 #include <mutex>
 
 #include "load_here.hpp"
-#include "raykiln/accuracy/allocation.hpp"
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/render/render.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
@@ -59,14 +58,14 @@ std::vector<std::uint32_t> block_sizes(const std::vector<render::SampleBlock>& b
 class LocalJob {
  public:
   LocalJob(std::shared_ptr<const render::PreparedScene> scene, render::RenderSettings settings,
-           const JobRequest& request, LocalPool& pool, bool adaptive)
+           const JobRequest& request, LocalPool& pool)
       : scene_(std::move(scene)),
         settings_(settings),
         request_(request),
         pool_(pool),
-        adaptive_(adaptive),
+        adaptive_(request.adaptive),
         blocks_(render::blocks_for(request.stop.samples)),
-        plan_(request.width, request.height, adaptive ? render::kCellSide : request.tile, block_sizes(blocks_),
+        plan_(request.width, request.height, request.tile, block_sizes(blocks_),
               TaskLength{}),
         film_(render::make_film(settings_)) {
     const StopRule& stop = request.stop;
@@ -127,12 +126,12 @@ class LocalJob {
   bool goes_on() {
     if (plan_.done()) done_by_ = DoneBy::kSamples;
     else if (plan_.closed()) done_by_ = DoneBy::kSeconds;
-    else {
-      judge();
-      if (target_met(request_.stop, *accuracy_)) done_by_ = DoneBy::kError;
-    }
     if (done_by_ != DoneBy::kNone) return false;
-    if (adaptive_) return place_samples();
+    const Decision decision = decide(film_, request_);
+    accuracy_ = decision.error;
+    if (target_met(request_.stop, *accuracy_)) done_by_ = DoneBy::kError;
+    if (done_by_ != DoneBy::kNone) return false;
+    if (adaptive_) return place_samples(decision.samples);
     const render::SampleBlock& last = blocks_[plan_.limit() - 1];
     plan_.set_limit(plan_.blocks_for(next_decision(last.first + last.count)));
     return true;
@@ -140,16 +139,15 @@ class LocalJob {
 
   void judge() {
     accuracy_ = judge_picture(film_, request_.pixel_mode == PixelMode::kRandom);
-    if (adaptive_) accuracy_->notices.emplace_back("adaptive");
+    mark_adaptive(*accuracy_, request_);
   }
 
-  /// A tenth more samples than the picture has, where they help most; more if that moves no cell.
-  bool place_samples() {
-    auto mean = static_cast<std::uint64_t>(progress().samples_per_pixel);
-    while (!plan_.has_work()) {
-      mean = next_decision(mean);
-      plan_.set_tile_limits(render::allocate_samples(film_, static_cast<double>(mean), request_.stop.samples));
-    }
+  bool place_samples(const std::vector<std::uint64_t>& samples) {
+    plan_.set_tile_limits(samples);
+    if (plan_.has_work()) return true;
+    auto more = plan_.tile_samples();  // samples that were dropped may hide where a tile is
+    for (std::uint64_t& n : more) n += render::sample_block(5).count;
+    plan_.set_tile_limits(more);
     return true;
   }
 
@@ -233,7 +231,7 @@ std::vector<JobWarning> warnings_of(const SceneReport& report) {
 
 Result<LocalPicture> render_locally(const ScenePackage& package, const JobRequest& request,
                                     LocalPool& pool,
-                                    const std::function<void(const ProgressState&)>& progress, bool adaptive) {
+                                    const std::function<void(const ProgressState&)>& progress) {
   const auto begun = Steady::now();
   const auto since = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
   progress({.stage = "importing"});
@@ -252,7 +250,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   const double build_seconds = since() - build_begun;
   const render::BuildStats tree_stats = render::build_stats(*tree);
   const auto prepared = render::prepare(loaded->scene, std::move(tree));
-  LocalJob job(prepared, *settings, request, pool, adaptive);
+  LocalJob job(prepared, *settings, request, pool);
   const double prepare_seconds = since();
   if (auto status = job.run(progress); !status) return status.error();
 
@@ -262,7 +260,6 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   for (const double e : errors) picture.error.push_back(static_cast<float>(e));
   for (const double n : job.film().plane("samples")) picture.samples.push_back(static_cast<float>(n));
   picture.job.request = request;
-  if (adaptive) picture.job.request.tile = render::kCellSide;  // what tile_samples count
   picture.job.state = JobState::kCompleted;
   picture.job.progress = job.progress();
   picture.job.statistics = job.statistics();

@@ -24,9 +24,8 @@ ExitCode complain(const Error& error) {
 
 std::map<std::string, std::string> attributes(const LocalPicture& picture, const std::string& scene) {
   const JobSnapshot& job = picture.job;
-  const bool adaptive = job.accuracy && std::ranges::count(job.accuracy->notices, "adaptive") > 0;
   return {{"raykiln:scene", scene},
-          {"raykiln:adaptive", adaptive ? "true" : "false"},
+          {"raykiln:adaptive", job.request.adaptive ? "true" : "false"},
           {"raykiln:light_model", light_model_label(job.request.light_model, job.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(job.request.seed)},
           {"raykiln:sampler", std::string(name(job.request.sampler))},
@@ -139,7 +138,7 @@ ExitCode render_command(const CliOptions& options) {
   LocalPool pool(workers);
   ProgressLine line(std::cerr, isatty(STDERR_FILENO) != 0, options.quiet);
   auto picture = render_locally(*package, request, pool,
-                                [&line](const ProgressState& state) { line.show(state); }, options.adaptive);
+                                [&line](const ProgressState& state) { line.show(state); });
   line.finish();
   if (!picture) return complain(picture.error());
   if (!options.quiet) {

@@ -174,6 +174,7 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   // Left out where they are the defaults: digests of requests stay those that older versions stored.
   if (q.sampler != JobRequest{}.sampler) r.text("sampler", name(q.sampler));
   if (q.effects != JobRequest{}.effects) r.text("effects", q.effects);
+  if (q.adaptive) r.integer("adaptive", 1);
   if (q.reuse) r.integer("reuse", 1);
 }
 
@@ -201,6 +202,7 @@ JobRequest read_request(const RecordReader& r) {
   q.emitter_sampling = r.integer("emitter_sampling", 1) != 0;
   q.sampler = sampler_named(r.text("sampler")).value_or(q.sampler);
   q.effects = r.text("effects", q.effects);
+  q.adaptive = r.integer("adaptive") != 0;
   q.reuse = r.integer("reuse") != 0;
   return q;
 }

@@ -81,6 +81,8 @@ std::optional<Error> stop_error(const JobRequest& r, const JobLimits& limits) {
   if (stop.error && !(*stop.error >= kLeastErrorTarget && *stop.error <= kLargestErrorTarget)) {
     return wrong("/stop/error", "must be from 0.0001 to 1");
   }
+  if (r.adaptive && !stop.error && !stop.seconds) return wrong("/adaptive", "needs /stop/error or /stop/seconds");
+  if (r.adaptive && r.tile != kAdaptiveTile) return wrong("/tile", "of an adaptive job must be 16");
   if (stop.tile_samples.empty()) return std::nullopt;
   if (stop.error || stop.seconds) {
     return wrong("/stop/tile_samples", "goes with neither seconds nor error");

@@ -16,6 +16,7 @@
 #include "raykiln/base/serial_thread.hpp"
 #include "raykiln/jobs/fair_share.hpp"
 #include "raykiln/jobs/tile_plan.hpp"
+#include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/scheduler.hpp"
 
 namespace raykiln::server {
@@ -130,7 +131,8 @@ class Scheduler::Core {
   void begin_stops(LiveJob& job);
   void time_is_up(const JobId& id);
   void rest(LiveJob& job);
-  void decided(LiveJob& job, PictureError error, double seconds, JobStatistics then);
+  void decided(LiveJob& job, Decision decision, double seconds, JobStatistics then);
+  void place_samples(LiveJob& job, const std::vector<std::uint64_t>& samples);
   void finish(LiveJob& job, DoneBy by);
   void measure_if_due(LiveJob& job);
   void note_error(LiveJob& job, PictureError error, const JobStatistics& then);

@@ -28,7 +28,9 @@ std::size_t decision_after(const LiveJob& job) {
 void Scheduler::Core::begin_stops(LiveJob& job) {
   const StopRule& stop = job.snapshot.request.stop;
   // A job that goes on is judged where it is; then where it would have been judged from its beginning.
-  if (stop.error) job.plan->set_limit(std::max(job.plan->blocks_for(kErrorFloor), job.plan->furthest_block()));
+  if (job.snapshot.request.adaptive) {
+    job.plan->set_tile_limits(std::vector<std::uint64_t>(static_cast<std::size_t>(job.plan->tiles()), kErrorFloor));
+  } else if (stop.error) job.plan->set_limit(std::max(job.plan->blocks_for(kErrorFloor), job.plan->furthest_block()));
   if (stop.seconds) {
     const JobId id = job.snapshot.id;
     const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000.0 * std::max(0.0, *stop.seconds - job.seconds_before))));
@@ -55,27 +57,27 @@ void Scheduler::Core::rest(LiveJob& job) {
   const JobStatistics& then = job.snapshot.statistics;
   if (job.settings.width * job.settings.height <= parts_.judged_at_once_px) {
     const SteadyTime begin = parts_.clock.steady();
-    auto error = judge_picture(*job.film, samples_area(job.snapshot));
-    return decided(job, std::move(error), seconds_between(begin, parts_.clock.steady()), then);
+    auto decision = decide(*job.film, job.snapshot.request);
+    return decided(job, std::move(decision), seconds_between(begin, parts_.clock.steady()), then);
   }
   // Seconds for the largest films. Nobody writes into this one until decided() hands out more of it.
   job.deciding = true;
   disk_.post([this, id = job.snapshot.id, film = std::shared_ptr<const render::Film>(job.film),
-              area = samples_area(job.snapshot), then] {
+              request = job.snapshot.request, then] {
     const SteadyTime begin = parts_.clock.steady();
-    std::optional<PictureError> error;
+    std::optional<Decision> decision;
     try {
-      error = judge_picture(*film, area);
+      decision = decide(*film, request);
     } catch (const std::exception& fault) {
       parts_.log.error("error_not_judged", {{"job", id}, {"why", fault.what()}});
     }
     const double seconds = seconds_between(begin, parts_.clock.steady());
-    post([this, id, error, seconds, then] {
+    post([this, id, decision, seconds, then] {
       LiveJob* waiting = find(id);
       if (waiting == nullptr || !waiting->deciding || halted_) return;
       waiting->deciding = false;
       if (waiting->ending) return;  // cancelled meanwhile
-      if (error) decided(*waiting, *error, seconds, then);
+      if (decision) decided(*waiting, *decision, seconds, then);
       else begin_ending(*waiting, JobEvent::kFail, Error{ErrorKind::kInternal, "render_failed", "no memory to judge the picture", ""});
       pump();
     });
@@ -83,12 +85,25 @@ void Scheduler::Core::rest(LiveJob& job) {
 }
 
 /// `then`: of the samples that were judged.
-void Scheduler::Core::decided(LiveJob& job, PictureError error, double seconds, JobStatistics then) {
-  note_error(job, std::move(error), then);
+void Scheduler::Core::decided(LiveJob& job, Decision decision, double seconds, JobStatistics then) {
+  note_error(job, std::move(decision.error), then);
   job.snapshot.statistics.accuracy_seconds += seconds;
   if (target_met(job.snapshot.request.stop, *job.snapshot.accuracy)) return finish(job, DoneBy::kError);
   if (job.plan->closed()) return rest(job);  // the time was up meanwhile
+  if (job.snapshot.request.adaptive) return place_samples(job, decision.samples);
   job.plan->set_limit(decision_after(job));
+  publish_soon(job);
+}
+
+/// What this picks depends on merged samples alone, and so do the bytes of an adaptive picture.
+void Scheduler::Core::place_samples(LiveJob& job, const std::vector<std::uint64_t>& samples) {
+  job.plan->set_tile_limits(samples);
+  if (!job.plan->has_work()) {  // a block more for each: samples that were dropped may hide where a tile is
+    auto more = job.plan->tile_samples();
+    for (std::uint64_t& n : more) n += render::sample_block(5).count;
+    job.plan->set_tile_limits(more);
+  }
+  if (job.plan->at_rest()) return rest(job);
   publish_soon(job);
 }
 
@@ -104,7 +119,7 @@ void Scheduler::Core::finish(LiveJob& job, DoneBy by) {
   s.progress.stop_fraction = 1.0;
   auto samples = job.plan->tile_samples();
   const bool even = std::all_of(samples.begin(), samples.end(), [&](std::uint64_t n) { return n == samples[0]; });
-  if (by == DoneBy::kSeconds && !even) s.tile_samples = std::move(samples);
+  if ((by == DoneBy::kSeconds || s.request.adaptive) && !even) s.tile_samples = std::move(samples);
   begin_ending(job, JobEvent::kRendered, std::nullopt);
 }
 
@@ -125,6 +140,7 @@ void Scheduler::Core::measure_if_due(LiveJob& job) {
 
 void Scheduler::Core::note_error(LiveJob& job, PictureError error, const JobStatistics& then) {
   JobSnapshot& s = job.snapshot;
+  mark_adaptive(error, s.request);
   if (error.known()) {
     add_point(s.curve, {.render_seconds = then.render_seconds,
                         .worker_seconds = then.worker_seconds,

@@ -50,7 +50,6 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.stop.samples = 1048576;
   request.max_depth = 0;
   request.seed = 9007199254740991U;
-  request.tile = 1;
   request.priority = 100;
   request.pixel_mode = PixelMode::kCentre;
   request.direction_sampling = DirectionSampling::kUniformSphere;
@@ -59,6 +58,8 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.effects = "without=refraction,roulette";
   request.light_model = LightModel::kSeed;
   request.light_model_overrides = {PhongDivisor::kMax, FresnelFormula::kSchlick, false, std::nullopt, true};
+  request.adaptive = true;
+  request.tile = kAdaptiveTile;
   for (const CameraChoice& camera : {CameraChoice{7}, CameraChoice{std::string("front")}, request.camera}) {
     request.camera = camera;
     const auto text = job_request_json(request);
@@ -101,6 +102,7 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/camera", {{"eye", {0, 0, 0}}, {"look_at", {0, 0, 1}}, {"fov_deg", 180}}, "/camera/fov_deg out_of_range");
   check("/emitter_sampling", 1, "/emitter_sampling wrong_type");
   check("/sampler", "halton", "/sampler invalid_value");
+  check("/adaptive", "yes", "/adaptive wrong_type");
   check("/effects", "none", "/effects invalid_value");
   check("/effects", "without=refraction", "/effects invalid_value");
   check("/effects", 3, "/effects wrong_type");

@@ -29,6 +29,8 @@ TEST(JobRequest, IsCheckedAgainstEveryLimit) {
       {"/tile", [](JobRequest& r) { r.tile = 0; }},
       {"/tile", [](JobRequest& r) { r.tile = 1, r.width = 16'384, r.height = 16'384; }},
       {"/priority", [](JobRequest& r) { r.priority = 101; }},
+      {"/adaptive", [](JobRequest& r) { r.adaptive = true, r.tile = kAdaptiveTile; }},
+      {"/tile", [](JobRequest& r) { r.adaptive = true, r.stop.error = 0.1; }},
       {"/camera", [](JobRequest& r) { r.camera = -1; }},
       {"/camera", [](JobRequest& r) { r.camera = std::string(); }},
       {"/camera/look_at", [](JobRequest& r) { r.camera = OwnCamera{}; }},
@@ -86,7 +88,8 @@ TEST(JobRequest, ResultDigestLeavesOutWhatChangesNoPicture) {
       [](JobRequest& r) { r.max_depth = 1; },
       [](JobRequest& r) { ++r.seed; },
       [](JobRequest& r) { r.emitter_sampling = !r.emitter_sampling; },
-      [](JobRequest& r) { r.sampler = Sampler::kSobol; }};
+      [](JobRequest& r) { r.sampler = Sampler::kSobol; },
+      [](JobRequest& r) { r.adaptive = true; }};
   for (const auto& change : changes) {
     JobRequest other = good();
     change(other);
@@ -102,6 +105,7 @@ TEST(JobRecord, ReadsBack) {
   job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3};
   job.request.seed = (1ULL << 53) - 1;
   job.request.reuse = true;
+  job.request.adaptive = true;
   job.request.sampler = Sampler::kSobol;
   job.state = JobState::kFailed;
   job.revision = 12;

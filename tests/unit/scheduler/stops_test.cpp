@@ -136,6 +136,45 @@ TEST(Stops, LargePicturesAreLookedAtOnASampleAndJudgedInFullInTheEnd) {
   EXPECT_GE(cancelled.accuracy->mean_samples, 4.0);
 }
 
+TEST(Stops, AdaptiveJobsDoNotDependOnThreadsAndAreMadeAgainFromTheirSamples) {
+  const auto adaptive = [](JobRequest& r) {
+    r.stop = {.samples = 4096, .error = 0.03};
+    r.width = 72;
+    r.height = 56;
+    r.adaptive = true;
+    r.tile = kAdaptiveTile;
+  };
+  const Ended one = run(1, adaptive), many = run(4, adaptive, 0);
+  EXPECT_EQ(one.job.done_by, DoneBy::kError);
+  EXPECT_LE(one.job.accuracy->error.high, 0.03);
+  EXPECT_GE(one.job.accuracy->least_samples, kErrorFloor);
+  EXPECT_EQ(one.job.accuracy->notices.back(), "adaptive");
+  EXPECT_EQ(many.rgb, one.rgb);
+  EXPECT_EQ(many.job.tile_samples, one.job.tile_samples);
+  ASSERT_EQ(one.job.tile_samples.size(), 20U) << "no cell has more than another";
+  const Ended again = run(3, [&](JobRequest& r) {
+    adaptive(r);
+    r.adaptive = false;
+    const auto& samples = one.job.tile_samples;
+    r.stop = {.samples = *std::max_element(samples.begin(), samples.end()), .tile_samples = samples};
+  });
+  EXPECT_EQ(again.rgb, one.rgb);
+  // By time: what was begun ends at borders, and says so.
+  const Ended timed = run(2, [&](JobRequest& r) {
+    adaptive(r);
+    r.stop = {.samples = 1'000'000, .seconds = 0.4};
+  });
+  EXPECT_EQ(timed.job.done_by, DoneBy::kSeconds);
+  EXPECT_EQ(timed.job.accuracy->notices.back(), "adaptive");
+  // All samples that there may be end it, too.
+  const Ended full = run(2, [&](JobRequest& r) {
+    adaptive(r);
+    r.stop = {.samples = 96, .error = 0.0001};
+  });
+  EXPECT_EQ(full.job.done_by, DoneBy::kSamples);
+  EXPECT_TRUE(full.job.tile_samples.empty());
+}
+
 TEST(Stops, EveryJobKnowsItsError) {
   const Ended ended = run(2, [](JobRequest& r) { r.stop.samples = 64; });
   ASSERT_TRUE(ended.job.accuracy);

@@ -23,4 +23,7 @@ inline constexpr double kLeastShareOfSamples = 0.25;
 /// without an estimate keep what they have and get `mean_samples`.
 [[nodiscard]] std::vector<std::uint64_t> allocate_samples(const Film& film, double mean_samples, std::uint64_t most);
 
+/// Samples a pixel that each cell has: those of its richest pixel, as a dropped sample makes none poorer.
+[[nodiscard]] std::vector<std::uint64_t> cell_samples(const Film& film);
+
 }  // namespace raykiln::render

@@ -75,7 +75,6 @@ struct CliOptions {
   ApproveOptions approve;
   AccuracyOptions accuracy;
   int threads = 0;
-  bool adaptive = false;  ///< of `render`
   bool wait = false;
   std::string job;
   std::string state;  ///< filter of `jobs`

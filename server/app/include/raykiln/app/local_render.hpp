@@ -19,13 +19,11 @@ struct LocalPicture {
   JobSnapshot job;  ///< completed, with statistics and warnings; its id is empty
 };
 
-/// `adaptive`: after kErrorFloor samples everywhere further ones go where they lower the error most, by cells of
-/// 16 x 16 pixels (which are the tiles then), until the request's error or time is reached; its samples are the
-/// most of any pixel. The accuracy has the notice "adaptive". Errors: those of the intake (the scene is wrong), "invalid_request" (settings, camera), and
+/// Errors: those of the intake (the scene is wrong), "invalid_request" (settings, camera), and
 /// "worker_failed".
 [[nodiscard]] Result<LocalPicture> render_locally(
     const ScenePackage& package, const JobRequest& request, LocalPool& pool,
-    const std::function<void(const ProgressState&)>& progress, bool adaptive = false);
+    const std::function<void(const ProgressState&)>& progress);
 
 /// The picture and its noise as EXR, with what made it as attributes. Errors: "internal".
 [[nodiscard]] Result<std::vector<std::uint8_t>> local_exr(const LocalPicture& picture, const std::string& scene);

@@ -15,6 +15,9 @@
 
 namespace raykiln::server {
 
+/// `tile` of adaptive jobs: whoever reads a request from outside sets it.
+inline constexpr int kAdaptiveTile = 16;
+
 enum class PixelMode { kRandom, kCentre };
 enum class DirectionSampling { kBsdf, kUniformSphere };
 enum class Sampler { kRandom, kSobol };
@@ -62,6 +65,9 @@ struct JobRequest {
   /// "auto", "all" or "without=refraction,roulette": which effects are simulated. The names are the
   /// renderer's; whoever reads a request from outside checks them.
   std::string effects = "auto";
+  /// Samples go where the error is, by cells of 16 x 16 pixels, which are the tiles then (kAdaptiveTile); needs
+  /// an error or a time to stop at, and stop.samples is the most of any pixel.
+  bool adaptive = false;
   bool reuse = false;           ///< a completed job whose picture is this one may stand in for it
 };
 
