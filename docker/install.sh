@@ -6,7 +6,7 @@ set -euo pipefail
 usage() {
   cat <<'TEXT'
 usage: docker/install.sh [--check] SET...
-  SET      build, run or test: the lists in docker/packages/
+  SET      build, run, test or peer: the lists in docker/packages/
   --check  install nothing; name what is missing and exit 1 if there is any
 exit: 0 everything is there, 1 something could not be installed, 2 wrong usage
 TEXT
@@ -24,7 +24,7 @@ for word in "$@"; do
   case "$word" in
     --check) check_only=1 ;;
     -h | --help) usage; exit 0 ;;
-    build | run | test) sets+=("$word") ;;
+    build | run | test | peer) sets+=("$word") ;;
     *) echo "docker/install.sh: unknown set '$word'" >&2; usage >&2; exit 2 ;;
   esac
 done

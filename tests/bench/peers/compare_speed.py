@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""Seconds to equal error, raykiln and Mitsuba 3 (`llvm_ad_rgb`) on the same scenes and the same threads.
+
+relMSE = mean over pixels and channels of (x - r)^2 / (r^2 + 0.01 mean(r)^2). It is taken from pairs: renders
+of one method with independent seeds differ by twice their error, with no noise of a reference in it; r, in the
+denominator, is the mean of all renders of both programs. tests/peer shows that both have the same r. From n
+samples in t seconds with error e, e t / target seconds give the target: error falls with the number of samples
+(a little faster with stratified samples, which n near the target leaves out).
+
+Methods take turns, so that a loud machine is loud for all. Seconds are of processor time, of all threads, of
+rendering alone: for raykiln what n samples take beyond one sample; for Mitsuba of a warm call, compiled before.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "peer"))
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+mi.set_variant("llvm_ad_rgb")
+
+import mitsuba_from_obj
+from speed_scenes import SCENES
+
+WORK = ROOT / "build" / "peers"
+BEGIN, END = "<!-- table -->", "<!-- end of table -->"
+TARGET = 0.003
+
+
+def children() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def own() -> float:
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+class Raykiln:
+    def __init__(self, program, folder, side, threads, sampler):
+        self.name, self.folder, self.target = f"raykiln {sampler}", folder, folder / f"{sampler}.exr"
+        self.command = [program, "-q", "render", str(folder), "-o", str(self.target), "--size",
+                        f"{side}x{side}", "--threads", str(threads), "--sampler", sampler]
+        self.start = None
+
+    def call(self, samples, seed):
+        before = children()
+        subprocess.run([*self.command, "--samples", str(samples), "--seed", str(seed)], check=True)
+        bitmap = mi.Bitmap(str(self.target))
+        wall = float(bitmap.metadata()["raykiln:seconds"])
+        return np.array(bitmap)[..., :3].astype(float), children() - before, wall
+
+    def warm(self, samples):
+        del samples
+        self.start = min(self.call(1, seed)[1] for seed in (1, 2))
+
+    def render(self, samples, seed):
+        picture, cpu, wall = self.call(samples, seed)
+        return picture, (cpu - self.start) * samples / (samples - 1), wall
+
+
+class Mitsuba:
+    def __init__(self, folder, side, sampler):
+        self.name = f"Mitsuba {sampler}"
+        scratch = folder / "mitsuba"
+        scratch.mkdir(exist_ok=True)
+        description = mitsuba_from_obj.convert(folder, scratch, (side, side))
+        description["sensor"]["sampler"] = {"type": sampler}
+        self.scene = mi.load_dict(description)
+
+    def warm(self, samples):
+        self.render(samples, 99)
+
+    def render(self, samples, seed):
+        before, clock = own(), time.monotonic()
+        picture = mi.render(self.scene, spp=samples, seed=seed)
+        dr.eval(picture)
+        dr.sync_thread()
+        wall, cpu = time.monotonic() - clock, own() - before
+        return np.array(picture).astype(float), cpu, wall
+
+
+def measure(name, options) -> dict:
+    write, samples = SCENES[name]
+    folder = WORK / name.split(",")[0].replace(" ", "_")
+    folder.mkdir(parents=True, exist_ok=True)
+    write(folder)
+    program = str(Path(options.bin) / "raykiln")
+    methods = [Raykiln(program, folder, options.side, options.threads, s) for s in ("random", "sobol")]
+    methods += [Mitsuba(folder, options.side, s) for s in ("independent", "multijitter")]
+    for method in methods:
+        method.warm(samples)
+    pictures, cpu, wall = ({m.name: [] for m in methods} for _ in range(3))
+    for turn in range(options.turns):
+        for method in methods:
+            picture, seconds, clock = method.render(samples, 10 + turn)
+            pictures[method.name].append(picture)
+            cpu[method.name].append(seconds)
+            wall[method.name].append(clock)
+    means = [np.mean(list(part), 0) for part in pictures.values()]
+    r = np.mean(means, 0)
+    weight = 1 / (r**2 + 0.01 * r.mean() ** 2)
+    result = {}
+    for method, renders in pictures.items():
+        error = float((np.var(renders, axis=0, ddof=1) * weight).mean())
+        seconds = float(np.median(cpu[method]))
+        result[method] = {"samples": samples, "cpu_s": seconds, "wall_s": float(np.median(wall[method])),
+                          "relmse": error, "to_target_s": seconds * error / TARGET,
+                          "bias": float(np.mean(renders) / r.mean() - 1)}
+        print(f"{name} | {method}: {result[method]}", flush=True)
+    return result
+
+
+def line(name, result) -> str:
+    best = {who: min(v["to_target_s"] for k, v in result.items() if k.startswith(who))
+            for who in ("raykiln", "Mitsuba")}
+    cells = [f"{v['to_target_s']:.2f} ({v['cpu_s']:.2f} s, {v['relmse']:.2g})" for v in result.values()]
+    return f"| {name} | {' | '.join(cells)} | **{best['raykiln'] / best['Mitsuba']:.2f}** |"
+
+
+def efficiency(options) -> list:
+    """Seconds for a million samples of raykiln alone, at one thread and at two."""
+    lines = ["| scene | processor s a million samples, 1 thread | 2 threads | wall s, 1 thread | 2 threads | efficiency by wall | by processor time |",
+             "|---|---|---|---|---|---|---|"]
+    folders = {"demo": ROOT / "server/app/demo"} | {
+        name: WORK / name.split(",")[0].replace(" ", "_") for name in SCENES if name in options.done}
+    for name, folder in folders.items():
+        found = {}
+        for threads in (1, 2, 1, 2):
+            render = Raykiln(str(Path(options.bin) / "raykiln"), folder, options.side, threads, "random")
+            render.warm(1)
+            _, cpu, wall = render.render(32, 5)
+            scale = 1e6 / (32 * options.side**2)
+            found.setdefault(threads, []).append((cpu * scale, wall * scale))
+        (c1, w1), (c2, w2) = (np.min(found[t], 0) for t in (1, 2))
+        lines.append(f"| {name} | {c1:.2f} | {c2:.2f} | {w1:.2f} | {w2:.2f} | {w1 / (2 * w2):.2f} | {c1 / c2:.2f} |")
+        print(lines[-1], flush=True)
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="tests/bench/peers/run", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", default=os.environ.get("RAYKILN_BIN_DIR", str(ROOT / "build/test/bin")))
+    parser.add_argument("--only", action="append", default=[], help="a scene's name (may be given again)")
+    parser.add_argument("--side", type=int, default=128, help="of the picture, pixels")
+    parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
+    options = parser.parse_args()
+    chosen = [n for n in SCENES if not options.only or n in options.only]
+    options.done = chosen
+    results = {name: measure(name, options) for name in chosen}
+    WORK.mkdir(parents=True, exist_ok=True)
+    (WORK / "speed.json").write_text(json.dumps(results, indent=1))
+    first = next(iter(results.values()))
+    lines = [f"| scene | {' | '.join(first)} | raykiln / Mitsuba, better of each |", "|---" * (len(first) + 2) + "|"]
+    lines += [line(name, result) for name, result in results.items()]
+    lines += ["", f"Processor seconds to relMSE {TARGET} (in brackets: seconds and relMSE of one render); {options.side} x {options.side} pixels, "
+              f"{options.turns} turns, {options.threads} threads, Mitsuba {mi.__version__}.", ""]
+    lines += efficiency(options)
+    print("\n".join(lines))
+    if options.readme:
+        path = Path(__file__).with_name("README.md")
+        before, rest = path.read_text().split(BEGIN)
+        path.write_text(before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + rest.split(END)[1])
+
+
+if __name__ == "__main__":
+    main()
