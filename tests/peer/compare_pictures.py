@@ -9,10 +9,10 @@ something out, is listed as missing and is neither.
 import argparse
 import json
 import os
-import subprocess
+import shutil
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import mitsuba as mi
@@ -20,6 +20,7 @@ import numpy as np
 
 import scenes
 import statistics_r5
+from our_renders import Missing, Raykiln
 
 ROOT = Path(__file__).resolve().parents[2]
 WORK = ROOT / "build" / "peer"
@@ -33,7 +34,7 @@ class Row:
     name: str
     title: str
     write: object
-    options: tuple = ()        # of raykiln render
+    options: dict = field(default_factory=dict)  # of raykiln's job
     facets: str = "stock"      # stock: Mitsuba's own; gltf: gltf_facets.py; check: that against its own
     judged: bool = True
     samples: int = 48          # of a pixel in each render
@@ -42,7 +43,7 @@ class Row:
 
 ROWS = [
     Row("cornell", "Cornell box", scenes.cornell),
-    Row("cornell_sobol", "the same by Sobol' points", scenes.cornell, ("--sampler", "sobol")),
+    Row("cornell_sobol", "the same by Sobol' points", scenes.cornell, {"sampler": "sobol"}),
     Row("glass_mirror", "glass and mirror spheres in a box", scenes.glass_and_mirror),
     *(Row(f"metal_{r}", f"metal, roughness {r}", scenes.metal(r), facets="gltf") for r in (0.1, 0.3, 0.6, 1.0)),
     Row("metal_check", "Mitsuba's plug-in against its `principled`, roughness 0.6", scenes.metal(0.6), facets="check"),
@@ -62,26 +63,13 @@ ROWS = [
 ]
 
 
-class Missing(Exception):
-    """What raykiln refuses, or says that it leaves out."""
-
-
-def ours(row, folder, program, threads, renders) -> np.ndarray:
-    target, pictures = folder / "ours.exr", []
+def ours(row, folder, daemon, renders) -> np.ndarray:
+    scene, pictures = daemon.upload(folder), []
     for k in range(renders):
-        command = [program, "render", str(folder), "-o", str(target), "--seed", str(OUR_SEED + k),
-                   "--samples", str(row.samples), "--size", f"{row.size[0]}x{row.size[1]}",
-                   "--threads", str(threads), *row.options]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        said = done.stderr.replace(str(folder), "").splitlines()
-        if done.returncode == 3:
-            raise Missing("refused: " + said[-1].removeprefix("raykiln: "))
-        if done.returncode != 0:
-            raise RuntimeError(f"exit code {done.returncode}: {' '.join(said[-1:])}")
-        ignored = [line for line in said if line.startswith("warning:") and "ignored" in line]
-        if ignored:
-            raise Missing(ignored[0].removeprefix("warning: ").split(" (")[0])
-        pictures.append(np.array(mi.Bitmap(str(target)))[..., :3].astype(float))
+        picture = daemon.render(scene, row.size, row.samples, OUR_SEED + k, **row.options)
+        (folder / "ours.exr").write_bytes(picture)
+        pictures.append(np.array(mi.Bitmap(str(folder / "ours.exr")))[..., :3].astype(float))
+    (folder / "ours.exr").unlink()
     return np.array(pictures)
 
 
@@ -103,10 +91,10 @@ def theirs(row, folder, variant, facets, first_seed, renders) -> np.ndarray:
                      for k in range(renders)])
 
 
-def pair(row, folder, program, threads, renders):
+def pair(row, folder, daemon, renders):
     import stock_facets
     if row.facets == "stock":
-        return (ours(row, folder, program, threads, renders),
+        return (ours(row, folder, daemon, renders),
                 theirs(row, folder, "scalar_rgb", stock_facets, THEIR_SEED, renders))
     if not os.environ.get("DRJIT_LIBLLVM_PATH"):
         raise Missing("not tried: a plug-in in Python wants LLVM (Debian: libllvm19)")
@@ -115,18 +103,19 @@ def pair(row, folder, program, threads, renders):
     if row.facets == "check":
         return (theirs(row, folder, "llvm_ad_rgb", Look(separable=True, single=True), CHECK_SEED, renders),
                 theirs(row, folder, "llvm_ad_rgb", stock_facets, THEIR_SEED, renders))
-    return (ours(row, folder, program, threads, renders),
+    return (ours(row, folder, daemon, renders),
             theirs(row, folder, "llvm_ad_rgb", Look(), THEIR_SEED, renders))
 
 
-def judge(row, program, threads, renders) -> dict:
+def judge(row, daemon, renders) -> dict:
     start, folder = time.monotonic(), WORK / row.name
-    folder.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
     mi.set_variant("scalar_rgb")
     result = {"name": row.name, "title": row.title, "judged": row.judged}
     row.write(folder)
     try:
-        verdict = statistics_r5.compare(*pair(row, folder, program, threads, renders))
+        verdict = statistics_r5.compare(*pair(row, folder, daemon, renders))
     except Missing as missing:
         return result | {"missing": str(missing), "seconds": time.monotonic() - start}
     worst = int(np.argmax(np.abs(verdict.difference / verdict.sigma)))
@@ -174,14 +163,15 @@ def main() -> int:
     options, results = parse(), []
     record = WORK / "pictures.json"
     known = json.loads(record.read_text()) if options.only and record.exists() else {}
-    for row in ROWS:
-        if options.only and row.name not in options.only:
-            continue
-        row.samples = options.samples or row.samples
-        results.append(judge(row, str(Path(options.bin) / "raykiln"), options.threads, options.renders))
-        print(f"{line(results[-1])} {results[-1]['seconds']:.0f} s", flush=True)
-        known[row.name] = results[-1]
-        record.write_text(json.dumps(known, indent=1, default=float))
+    with Raykiln(WORK / "daemon", Path(options.bin), options.threads) as daemon:
+        for row in ROWS:
+            if options.only and row.name not in options.only:
+                continue
+            row.samples = options.samples or row.samples
+            results.append(judge(row, daemon, options.renders))
+            print(f"{line(results[-1])} {results[-1]['seconds']:.0f} s", flush=True)
+            known[row.name] = results[-1]
+            record.write_text(json.dumps(known, indent=1, default=float))
     if options.readme:
         write_readme(table([known[row.name] for row in ROWS if row.name in known],
                            f"Mitsuba {mi.__version__}; {options.renders} renders of independent seeds a program, "

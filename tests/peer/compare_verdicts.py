@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 import broken_files
+from our_renders import Raykiln
 
 ROOT = Path(__file__).resolve().parents[2]
 WORK = ROOT / "build" / "peer"
@@ -53,15 +54,6 @@ def validate(files) -> dict:
     done = subprocess.run(["node", str(Path(__file__).with_name("validate.mjs")), str(WORK / "npm"),
                            *map(str, files)], check=True, capture_output=True, text=True)
     return {Path(k): v["errors"] for k, v in json.loads(done.stdout).items()}
-
-
-def ours(program, path):
-    """Empty where the file is taken, else raykiln's words."""
-    done = subprocess.run([program, "-q", "effects", str(path)], capture_output=True, text=True, check=False)
-    if done.returncode == 0:
-        return ""
-    words = done.stderr.strip().splitlines()[-1].removeprefix("raykiln: ").replace(str(path.parent) + "/", "")
-    return words if done.returncode == 3 else f"CRASHED with exit code {done.returncode}: {words}"
 
 
 def reason(name, errors, words):
@@ -122,8 +114,10 @@ def main() -> int:
     options, _ = parser.parse_known_args()
     files = list(collect())
     theirs, rows = validate([path for *_, path in files]), []
+    with Raykiln(WORK / "verdicts", Path(options.bin), 1) as daemon:
+        ours = {path: daemon.verdict(path) for *_, path in files}
     for kind, name, path in files:
-        errors, words = theirs[path], ours(str(Path(options.bin) / "raykiln"), path)
+        errors, words = theirs[path], ours[path]
         differ = bool(errors) != bool(words) or words.startswith("CRASHED")
         row = {"kind": kind, "name": name, "errors": errors, "ours": words,
                "why": reason(name, errors, words) if differ else ""}

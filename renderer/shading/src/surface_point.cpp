@@ -31,9 +31,14 @@ constexpr double kFromEdges = 4.0;
 // behind the other wall, and the ray escapes. So a ray that leaves a point near an edge starts
 // farther inside of its triangle: no barycentric is below kFromEdges * clearance / height. Then it
 // starts clear of every wall that meets this one at more than atan(1/kFromEdges) = 14 degrees.
-// `twice_area` is the length of the cross product of two sides.
+// `twice_area` is the length of the cross product of two sides, `reach` the largest coordinate of
+// p_i - point: no side is longer than 2 sqrt(3) reach, which tells most points without the sides' lengths.
 Vec3d away_from_edges(const std::array<Vec3d, 3>& p, const std::array<double, 3>& b,
-                      double twice_area, double clearance) {
+                      double twice_area, double clearance, double reach) {
+  constexpr double kLongestSide = 3.47;  // 2 sqrt(3), and more than all roundings
+  if (std::min({b[0], b[1], b[2]}) * twice_area >= kFromEdges * kLongestSide * clearance * reach) {
+    return Vec3d(0.0);
+  }
   std::array<double, 3> least{};
   bool near = false;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -89,7 +94,7 @@ SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t id, double u,
   double reach = 0.0;
   for (const Vec3d& vertex : p) reach = std::max(reach, largest_component(vertex - point.p));
   point.clearance = dot(abs(point.ng), bound) + gamma_bound(4) * reach;
-  point.inwards = away_from_edges(p, b, twice_area, point.clearance);
+  point.inwards = away_from_edges(p, b, twice_area, point.clearance, reach);
   return point;
 }
 
