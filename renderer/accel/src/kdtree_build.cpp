@@ -9,6 +9,7 @@
 #include "root_events.hpp"
 #include "subtree_builder.hpp"
 #include "tree_layout.hpp"
+#include "tree_pages.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -65,6 +66,7 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
   release_spare_memory(*tree);
   tree->stats.bytes = size_in_bytes(tree->nodes) + size_in_bytes(tree->blocks8) +
                       size_in_bytes(tree->blocks16) + size_in_bytes(tree->opaque_bits);
+  prefer_large_pages(*tree);
   runner.progress(1.0);
   return tree;
 }
