@@ -34,13 +34,14 @@ bool BuildContext::stopped() {
   return true;
 }
 
-void BuildContext::for_each_axis(bool parallel, const std::function<void(int)>& body) {
-  if (!parallel || !concurrent) {
-    for (int axis = 0; axis < 3; ++axis) body(axis);
+void BuildContext::for_each(std::size_t n, const std::function<void(std::size_t)>& body) {
+  if (!concurrent || n < 2) {
+    for (std::size_t i = 0; i < n; ++i) body(i);
     return;
   }
-  const std::array<std::function<void()>, 3> tasks{[&] { body(0); }, [&] { body(1); },
-                                                   [&] { body(2); }};
+  std::vector<std::function<void()>> tasks;
+  tasks.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) tasks.emplace_back([&body, i] { body(i); });
   runner.run(tasks);
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 
@@ -28,8 +29,8 @@ class BuildContext {
     }
   }
 
-  /// Runs body(axis) for the three axes, as tasks when `parallel` and there is someone to run them.
-  void for_each_axis(bool parallel, const std::function<void(int)>& body);
+  /// Runs body(i) for i in [0, n), as tasks when there is someone to run them.
+  void for_each(std::size_t n, const std::function<void(std::size_t)>& body);
 
   /// Adds a share of the whole build, in [0, 1], to what the runner is told.
   void finished(double share);
@@ -48,6 +49,24 @@ class BuildContext {
   std::atomic<bool> stopped_{false};
   std::atomic<std::uint64_t> done_{0};      ///< in units of 2^-40 of the build
   std::atomic<std::uint64_t> reported_{0};  ///< in percent
+};
+
+/// Looks for a stop once in a while of counted work; one for each task.
+class StopGauge {
+ public:
+  explicit StopGauge(BuildContext& context) : context_(context) {}
+  [[nodiscard]] bool stopped_after(std::size_t work) {
+    work_ += work;
+    if (work_ < kGaugeInterval) return seen_;
+    work_ = 0;
+    return seen_ = context_.stopped();
+  }
+
+ private:
+  static constexpr std::size_t kGaugeInterval = 512;
+  BuildContext& context_;
+  std::size_t work_ = 0;
+  bool seen_ = false;
 };
 
 }  // namespace raykiln::render

@@ -4,15 +4,18 @@
 #include <stdexcept>
 
 #include "build_context.hpp"
+#include "raykiln/accel/build_limits.hpp"
 #include "raykiln/accel/kdtree.hpp"
 #include "raykiln/accel/kdtree_data.hpp"
-#include "root_events.hpp"
+#include "root_references.hpp"
 #include "subtree_builder.hpp"
 #include "tree_layout.hpp"
 #include "tree_pages.hpp"
 
 namespace raykiln::render {
 namespace {
+
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 30;  // nodes keep 30 bits of an index
 
 void copy_mesh(const TriangleView& mesh, KdTree& tree) {
   tree.positions.assign(mesh.positions.begin(), mesh.positions.end());
@@ -31,17 +34,31 @@ std::uint64_t size_in_bytes(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
-void release_spare_memory(KdTree& tree) {
-  tree.nodes.shrink_to_fit();
-  tree.blocks8.shrink_to_fit();
-  tree.blocks16.shrink_to_fit();
+// References a triangle that fit into max_bytes whatever the mesh is: every reference may
+// stand in a cell and in the part that is split off, and end up alone in a leaf with a block, a
+// node above it and both before they had their places.
+double affordable_duplication(const BuildParams& params, std::size_t n, std::uint64_t mesh_bytes,
+                              std::uint64_t max_bytes) {
+  if (max_bytes == 0 || n == 0) return params.max_duplication;
+  const std::size_t block =
+      params.leaf_width == 16 ? sizeof(LeafBlock<16>) : sizeof(LeafBlock<8>);
+  const std::size_t of_one = 2 * sizeof(Reference) + block + sizeof(std::uint32_t) +
+                             2 * (sizeof(KdNode) + sizeof(BuildNode));
+  const std::uint64_t left = max_bytes - std::min(max_bytes, mesh_bytes);
+  const double references = static_cast<double>(left) / static_cast<double>(of_one);
+  return std::clamp(references / static_cast<double>(n), 1.0, params.max_duplication);
 }
 
 }  // namespace
 
 std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const BuildParams& params,
                                            TaskRunner& runner) {
-  if (mesh.triangles.size() > kMaxEventId) throw std::length_error("kd-tree: over 2^30 triangles");
+  return build_kdtree(mesh, params, runner, BuildLimits{});
+}
+
+std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const BuildParams& params,
+                                           TaskRunner& runner, const BuildLimits& limits) {
+  if (mesh.triangles.size() > kMaxTriangles) throw std::length_error("kd-tree: over 2^30 triangles");
   if (!mesh.opaque.empty() && mesh.opaque.size() != mesh.triangles.size()) {
     throw std::invalid_argument("kd-tree: one opaque flag a triangle, or none");
   }
@@ -54,16 +71,17 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
   tree->params = context.params;
   tree->stats.triangles = mesh.triangles.size();
   tree->stats.dropped_degenerate = root.dropped_degenerate;
-  tree->stats.keys_sorted_passes = root.sort_operations;
-  const std::size_t n = root.subtree.ids.size();
-  root.subtree.budget = static_cast<std::uint64_t>((context.params.max_duplication - 1.0) *
-                                                   static_cast<double>(n));
+  const std::size_t n = root.subtree.size();
+  const std::uint64_t mesh_bytes = mesh.positions.size_bytes() + mesh.triangles.size_bytes();
+  const double duplication =
+      affordable_duplication(context.params, n, mesh_bytes, limits.max_bytes);
+  root.subtree.budget = static_cast<std::uint64_t>((duplication - 1.0) * static_cast<double>(n));
   tree->stats.leaf_cost = context.params.k_i * static_cast<double>(n);
   const int cap = depth_cap(context.params.max_depth, n);
-  const auto built = build_subtree(context, std::move(root.subtree), cap);
+  auto built = build_root(context, std::move(root.subtree), cap);
   if (context.stopped() || !lay_out(context, *built, *tree)) return nullptr;
+  built.reset();
   copy_mesh(mesh, *tree);
-  release_spare_memory(*tree);
   tree->stats.bytes = size_in_bytes(tree->nodes) + size_in_bytes(tree->blocks8) +
                       size_in_bytes(tree->blocks16) + size_in_bytes(tree->opaque_bits);
   prefer_large_pages(*tree);

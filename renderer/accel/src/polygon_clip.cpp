@@ -1,6 +1,7 @@
 #include "polygon_clip.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "raykiln/math/float_bits.hpp"
 
@@ -25,19 +26,19 @@ Point cut(const Point& a, const Point& b, std::size_t axis, double plane) {
 }
 
 // Sutherland & Hodgman 1974: keeps the side sign * (x - plane) <= 0, the plane included.
-void clip(Polygon& polygon, std::size_t axis, double plane, double sign) {
-  Polygon kept;
+void clip(const Polygon& polygon, std::size_t axis, double plane, double sign, Polygon& kept) {
+  kept.n = 0;
+  double da = sign * (polygon.p[0][axis] - plane);
   for (int i = 0; i < polygon.n; ++i) {
     const Point& a = polygon.p[static_cast<std::size_t>(i)];
     const Point& b = polygon.p[static_cast<std::size_t>(i + 1 == polygon.n ? 0 : i + 1)];
-    const double da = sign * (a[axis] - plane);
     const double db = sign * (b[axis] - plane);
     if (da <= 0.0 && kept.n < 9) kept.p[static_cast<std::size_t>(kept.n++)] = a;
     if (((da < 0.0 && db > 0.0) || (da > 0.0 && db < 0.0)) && kept.n < 9) {
       kept.p[static_cast<std::size_t>(kept.n++)] = cut(a, b, axis, plane);
     }
+    da = db;
   }
-  polygon = kept;
 }
 
 void extent(const Polygon& polygon, std::size_t axis, double& lo, double& hi) {
@@ -51,11 +52,13 @@ void extent(const Polygon& polygon, std::size_t axis, double& lo, double& hi) {
 }  // namespace
 
 std::optional<Bounds3f> clipped_bounds(const std::array<Vec3f, 3>& corners, const Bounds3f& cell) {
-  Polygon polygon;
-  polygon.n = 3;
+  std::array<Polygon, 2> polygons;  // in turns what there is and what is kept of it
+  Polygon* polygon = &polygons[0];
+  Polygon* kept = &polygons[1];
+  polygon->n = 3;
   for (std::size_t i = 0; i < 3; ++i) {
-    polygon.p[i] = {static_cast<double>(corners[i].x), static_cast<double>(corners[i].y),
-                    static_cast<double>(corners[i].z)};
+    polygon->p[i] = {static_cast<double>(corners[i].x), static_cast<double>(corners[i].y),
+                     static_cast<double>(corners[i].z)};
   }
   double lo = 0.0;
   double hi = 0.0;
@@ -63,16 +66,22 @@ std::optional<Bounds3f> clipped_bounds(const std::array<Vec3f, 3>& corners, cons
     const auto axis = static_cast<int>(k);
     const auto cell_lo = static_cast<double>(cell.lo[axis]);
     const auto cell_hi = static_cast<double>(cell.hi[axis]);
-    extent(polygon, k, lo, hi);
-    if (lo < cell_lo) clip(polygon, k, cell_lo, -1.0);
-    if (polygon.n == 0) return std::nullopt;
-    if (hi > cell_hi) clip(polygon, k, cell_hi, 1.0);
-    if (polygon.n == 0) return std::nullopt;
+    extent(*polygon, k, lo, hi);
+    if (lo < cell_lo) {
+      clip(*polygon, k, cell_lo, -1.0, *kept);
+      std::swap(polygon, kept);
+      if (polygon->n == 0) return std::nullopt;
+    }
+    if (hi > cell_hi) {
+      clip(*polygon, k, cell_hi, 1.0, *kept);
+      std::swap(polygon, kept);
+      if (polygon->n == 0) return std::nullopt;
+    }
   }
   Bounds3f bounds;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<int>(k);
-    extent(polygon, k, lo, hi);
+    extent(*polygon, k, lo, hi);
     bounds.lo[axis] = std::clamp(round_down(lo), cell.lo[axis], cell.hi[axis]);
     bounds.hi[axis] = std::clamp(round_up(hi), cell.lo[axis], cell.hi[axis]);
   }

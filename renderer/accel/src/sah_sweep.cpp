@@ -24,30 +24,6 @@ Group take_group(std::span<const EventKey> events, std::size_t& i) {
   return group;
 }
 
-class Chooser {
- public:
-  Chooser(int axis, const SweepInput& input, const BuildParams& params)
-      : axis_(axis), input_(input), cost_(input.cell, axis, params) {}
-
-  void consider(float position, std::uint32_t n_left, std::uint32_t n_right, bool planar_left) {
-    const double cost = cost_.of(position, n_left, n_right);
-    if (!(cost < result.best.cost)) return;
-    const std::uint64_t references = std::uint64_t{n_left} + n_right;
-    if (references > input_.n && references - input_.n > input_.budget) {
-      if (cost < result.unaffordable) result.unaffordable = cost;
-      return;
-    }
-    result.best = {axis_, position, planar_left, n_left, n_right, cost};
-  }
-
-  SweepResult result;
-
- private:
-  int axis_;
-  const SweepInput& input_;
-  CellCost cost_;
-};
-
 }  // namespace
 
 double surface_area(const Bounds3f& box) {
@@ -66,27 +42,12 @@ CellCost::CellCost(const Bounds3f& cell, int axis, const BuildParams& params)
       k_i_over_area_(params.k_i / surface_area(cell)),
       empty_factor_(params.empty_factor) {}
 
-double CellCost::of(float position, std::uint32_t n_left, std::uint32_t n_right) const {
-  const auto p = static_cast<double>(position);
-  const double area_left = cap_area_ + half_girth_ * (p - lo_);
-  const double area_right = cap_area_ + half_girth_ * (hi_ - p);
-  const double cost = k_t_ + k_i_over_area_ * (area_left * n_left + area_right * n_right);
-  return n_left == 0 || n_right == 0 ? cost * empty_factor_ : cost;
-}
-
-SweepResult sweep_axis(std::span<const EventKey> events, int axis, const SweepInput& input,
-                       BuildContext& context) {
-  Chooser chooser(axis, input, context.params);
+void sweep(std::span<const EventKey> events, const SweepInput& input, int axis,
+           std::uint32_t n_left, std::uint32_t n_gone, PlaneChooser& chooser) {
   const float lo = input.cell.lo[axis];
   const float hi = input.cell.hi[axis];
-  std::uint32_t n_left = 0;
-  std::uint32_t n_right = input.n;
-  std::size_t next_look = kStopInterval;
+  std::uint32_t n_right = input.n - n_gone;
   for (std::size_t i = 0; i < events.size();) {
-    if (i >= next_look) {
-      if (context.stopped()) break;
-      next_look = i + kStopInterval;
-    }
     const float position = rank_to_float(event_rank(events[i]));
     const Group group = take_group(events, i);
     n_right -= group.planars + group.ends;
@@ -96,7 +57,13 @@ SweepResult sweep_axis(std::span<const EventKey> events, int axis, const SweepIn
     }
     n_left += group.starts + group.planars;
   }
-  return chooser.result;
+}
+
+SweepResult sweep_axis(std::span<const EventKey> events, int axis, const SweepInput& input,
+                       const BuildParams& params) {
+  PlaneChooser chooser(axis, input, params);
+  sweep(events, input, axis, 0, 0, chooser);
+  return chooser.result();
 }
 
 }  // namespace raykiln::render

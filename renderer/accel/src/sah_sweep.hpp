@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "build_context.hpp"
 #include "event_key.hpp"
@@ -28,7 +29,24 @@ class CellCost {
 
   /// C = k_t + k_i (SA_l/SA N_l + SA_r/SA N_r), times the empty factor when a side is empty
   /// (Wald & Havran 2006, equations 2 and 5). Not a number for a cell without area.
-  [[nodiscard]] double of(float position, std::uint32_t n_left, std::uint32_t n_right) const;
+  [[nodiscard]] double of(float position, std::uint32_t n_left, std::uint32_t n_right) const {
+    const double cost = before_factor(static_cast<double>(position), n_left, n_right);
+    return n_left == 0 || n_right == 0 ? cost * empty_factor_ : cost;
+  }
+  [[nodiscard]] double before_factor(double p, double n_left, double n_right) const {
+    const double area_left = cap_area_ + half_girth_ * (p - lo_);
+    const double area_right = cap_area_ + half_girth_ * (hi_ - p);
+    return k_t_ + k_i_over_area_ * (area_left * n_left + area_right * n_right);
+  }
+
+  /// The cost before the factor is k_t + (cap + girth x) N_l + (cap + girth (width - x)) N_r at a
+  /// distance x from the cell's lower face.
+  struct Line {
+    double k_t, cap, girth, width;
+  };
+  [[nodiscard]] Line line() const {
+    return {k_t_, cap_area_ * k_i_over_area_, half_girth_ * k_i_over_area_, hi_ - lo_};
+  }
 
  private:
   double lo_, hi_, cap_area_, half_girth_, k_t_, k_i_over_area_, empty_factor_;
@@ -48,9 +66,54 @@ struct SweepResult {
   double unaffordable = std::numeric_limits<double>::infinity();  ///< cheapest one beyond it
 };
 
-/// Candidates are the event positions strictly inside the cell: a plane in a face of the cell
-/// would make a flat child.
+/// Takes planes of one axis in any order and keeps the cheapest; of equals the one at the lowest
+/// position, and there the one offered first.
+class PlaneChooser {
+ public:
+  PlaneChooser(int axis, const SweepInput& input, const BuildParams& params)
+      : cost_(input.cell, axis, params), input_(&input), axis_(axis) {}
+
+  void consider(float position, std::uint32_t n_left, std::uint32_t n_right, bool planar_left) {
+    const double cost = cost_.of(position, n_left, n_right);
+    const SplitPlane& best = result_.best;
+    const bool ahead = cost == best.cost && best.axis >= 0 && position < best.position;
+    if (!(cost < best.cost) && !ahead) return;
+    const std::uint64_t references = std::uint64_t{n_left} + n_right;
+    if (references > input_->n && references - input_->n > input_->budget) {
+      if (cost < result_.unaffordable) result_.unaffordable = cost;
+      return;
+    }
+    result_.best = {axis_, position, planar_left, n_left, n_right, cost};
+  }
+
+  [[nodiscard]] const SweepResult& result() const { return result_; }
+  [[nodiscard]] const CellCost& cost() const { return cost_; }
+
+ private:
+  CellCost cost_;
+  const SweepInput* input_;
+  SweepResult result_;
+  int axis_;
+};
+
+/// Adds the one or two events of an extent.
+inline void append_events(float lo, float hi, std::uint32_t id, std::vector<EventKey>& events) {
+  if (event_rank(make_event(lo, EventType::kPlanar, 0)) ==
+      event_rank(make_event(hi, EventType::kPlanar, 0))) {
+    events.push_back(make_event(lo, EventType::kPlanar, id));
+    return;
+  }
+  events.push_back(make_event(lo, EventType::kStart, id));
+  events.push_back(make_event(hi, EventType::kEnd, id));
+}
+
+/// Offers all planes at sorted events that stand strictly inside the cell: a plane in a face of it
+/// would make a flat child. `n_left` triangles begin and `n_gone` end before the first event.
+void sweep(std::span<const EventKey> events, const SweepInput& input, int axis,
+           std::uint32_t n_left, std::uint32_t n_gone, PlaneChooser& chooser);
+
+/// The best plane by all sorted events of an axis.
 [[nodiscard]] SweepResult sweep_axis(std::span<const EventKey> events, int axis,
-                                     const SweepInput& input, BuildContext& context);
+                                     const SweepInput& input, const BuildParams& params);
 
 }  // namespace raykiln::render

@@ -2,28 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "raykiln/accel/kdtree_data.hpp"
+#include "reference_split.hpp"
 
 namespace raykiln::render {
 namespace {
 
+// The references of the cell in work lie on top of a stack, those of the cells that wait below it.
 class SubtreeBuilder {
  public:
-  SubtreeBuilder(BuildContext& context, SubtreeInput& input, int max_depth)
+  SubtreeBuilder(BuildContext& context, SubtreeInput input, int max_depth)
       : context_(context),
-        mesh_ids_(std::move(input.ids)),
-        partition_(context, mesh_ids_),
+        stop_(context),
+        search_(context),
         max_depth_(max_depth),
         result_(std::make_unique<Subtree>()) {
-    stacks_.events = std::move(input.events);
-    stacks_.ids.resize(mesh_ids_.size());
-    for (std::size_t i = 0; i < mesh_ids_.size(); ++i) {
-      stacks_.ids[i] = static_cast<std::uint32_t>(i);
+    stack_.reserve(input.size() + input.size() / 4);
+    for (Run& run : input.runs) {
+      stack_.insert(stack_.end(), run.data.get(), run.data.get() + run.size);
+      run = {};
     }
-    root_ = {input.cell, {}, input.depth, input.budget, input.share};
-    note_live(0);
+    root_ = {input.cell, 0, input.depth, input.budget, input.share};
+    note_live();
   }
 
   std::unique_ptr<Subtree> build() {
@@ -34,17 +35,17 @@ class SubtreeBuilder {
  private:
   struct Cell {
     Bounds3f box;
-    StackMark begin;
+    std::size_t begin = 0;
     int depth = 0;
     std::uint64_t budget = 0;
     double share = 0.0;
   };
 
-  // Builds the cell on top of the stacks and takes it off.
+  // Builds the cell on top of the stack and takes it off.
   std::uint32_t build_top(const Cell& cell) {
-    const std::size_t n = stacks_.ids.size() - cell.begin.ids;
-    const SplitPlane plane = context_.stopped() ? SplitPlane{} : choose(cell, n);
-    if (plane.axis < 0 || context_.stopped()) return emit_leaf(cell);
+    const std::size_t n = stack_.size() - cell.begin;
+    const SplitPlane plane = stop_.stopped_after(n + 16) ? SplitPlane{} : choose(cell, n);
+    if (plane.axis < 0) return emit_leaf(cell);
 
     auto& nodes = result_->nodes;
     const auto index = static_cast<std::uint32_t>(nodes.size());
@@ -54,141 +55,72 @@ class SubtreeBuilder {
     Cell right = cell;
     left.box.hi[plane.axis] = right.box.lo[plane.axis] = plane.position;
     left.depth = right.depth = cell.depth + 1;
-    right.begin = partition_.split(stacks_, cell.begin, cell.box, plane, result_->counts);
-    note_live(0);
-    share_out(n, cell, left, right);
+    right.begin = split_top(cell, plane, n);
+    const Shares shares =
+        share_out(cell.budget, n, right.begin - cell.begin, stack_.size() - right.begin);
+    left.budget = shares.left_budget;
+    right.budget = shares.right_budget;
+    left.share = cell.share * shares.left_share;
+    right.share = cell.share - left.share;
 
-    std::array<std::uint32_t, 2> children{};
-    if (context_.concurrent && n >= kParallelMin) {
-      children = build_as_tasks(left, right);
-    } else {
-      children[1] = build_top(right);
-      children[0] = build_top(left);
-    }
-    nodes[index].a = children[0];
-    nodes[index].b = children[1];
+    const std::uint32_t b = build_top(right);
+    const std::uint32_t a = build_top(left);
+    result_->nodes[index].a = a;
+    result_->nodes[index].b = b;
     return index;
   }
 
-  // What is left of the budget goes to the children in proportion to their references, so that
-  // all cells of a level together never hold more than the whole build may.
-  void share_out(std::size_t n, const Cell& cell, Cell& left, Cell& right) const {
-    const std::uint64_t n_left = right.begin.ids - left.begin.ids;
-    const std::uint64_t n_right = stacks_.ids.size() - right.begin.ids;
-    const std::uint64_t total = n_left + n_right;
-    const std::uint64_t added = total > n ? total - n : 0;
-    const std::uint64_t rest = cell.budget - std::min(cell.budget, added);
-    left.budget = total == 0 ? 0 : rest / total * n_left + rest % total * n_left / total;
-    right.budget = rest - left.budget;
-    left.share = total == 0 ? cell.share
-                            : cell.share * static_cast<double>(n_left) / static_cast<double>(total);
-    right.share = cell.share - left.share;
-  }
-
-  [[nodiscard]] std::span<const EventKey> events_of(const Cell& cell, std::size_t axis) const {
-    return std::span(stacks_.events[axis]).subspan(cell.begin.events[axis]);
-  }
-
   SplitPlane choose(const Cell& cell, std::size_t n) {
-    const double leaf_cost = context_.params.k_i * static_cast<double>(n);
-    if (n == 0 || leaf_cost <= context_.params.k_t * context_.params.empty_factor) return {};
-    const SweepInput input{cell.box, static_cast<std::uint32_t>(n), cell.budget};
-    std::array<SweepResult, 3> results;
-    context_.for_each_axis(n >= kParallelMin, [&](int axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      results[a] = sweep_axis(events_of(cell, a), axis, input, context_);
-    });
-    SplitPlane best;
-    double unaffordable = leaf_cost;
-    for (std::size_t a = 0; a < 3; ++a) {
-      result_->counts.events_swept += events_of(cell, a).size();
-      if (results[a].best.cost < best.cost) best = results[a].best;
-      unaffordable = std::min(unaffordable, results[a].unaffordable);
-    }
-    const bool useful = best.cost < leaf_cost;
-    if (unaffordable < std::min(best.cost, leaf_cost)) result_->counts.budget_reached = true;
-    if (useful && cell.depth >= max_depth_) result_->counts.budget_reached = true;
-    return useful && cell.depth < max_depth_ ? best : SplitPlane{};
+    const std::span<const Reference> all = std::span(stack_).subspan(cell.begin);
+    return choose_plane(context_, search_, Runs(&all, 1),
+                        {cell.box, static_cast<std::uint32_t>(n), cell.budget}, cell.depth,
+                        max_depth_, false, result_->counts);
+  }
+
+  // Replaces the cell on top by its left and then its right part; gives where the right one begins.
+  std::size_t split_top(const Cell& cell, const SplitPlane& plane, std::size_t n) {
+    if (right_.size() < n) right_.resize(n);
+    Reference* const begin = stack_.data() + cell.begin;
+    const auto sizes = ReferenceSplit(context_, cell.box, plane)
+                           .run({begin, n}, begin, right_.data());
+    result_->counts.clips += sizes.clips;
+    result_->counts.events_moved += 6 * (n + sizes.right);
+    stack_.resize(cell.begin + sizes.left);
+    stack_.insert(stack_.end(), right_.data(), right_.data() + sizes.right);
+    note_live();
+    return cell.begin + sizes.left;
   }
 
   std::uint32_t emit_leaf(const Cell& cell) {
     auto& references = result_->references;
     const auto first = static_cast<std::uint32_t>(references.size());
-    for (std::size_t i = cell.begin.ids; i < stacks_.ids.size(); ++i) {
-      references.push_back(mesh_ids_[stacks_.ids[i]]);
+    for (std::size_t i = cell.begin; i < stack_.size(); ++i) {
+      references.push_back(stack_[i].triangle);
     }
-    cut_to(stacks_, cell.begin);
+    stack_.resize(cell.begin);
     result_->nodes.push_back({BuildNode::Kind::kLeaf, 0, 0.0F, first,
                               static_cast<std::uint32_t>(references.size()) - first});
-    context_.finished(cell.share);
+    unreported_ += cell.share;
+    if (unreported_ > 1e-3 || stack_.empty()) {
+      context_.finished(unreported_);
+      unreported_ = 0.0;
+    }
     return static_cast<std::uint32_t>(result_->nodes.size() - 1);
   }
 
-  [[nodiscard]] static std::uint64_t bytes_from(const StackMark& begin, const EventStacks& stacks) {
-    std::uint64_t bytes = (stacks.ids.size() - begin.ids) * sizeof(std::uint32_t);
-    for (std::size_t a = 0; a < 3; ++a) {
-      bytes += (stacks.events[a].size() - begin.events[a]) * sizeof(EventKey);
-    }
-    return bytes;
-  }
-
-  // `more` bytes stand beside what is on the stacks.
-  void note_live(std::uint64_t more) {
+  void note_live() {
     std::uint64_t& peak = result_->counts.live_bytes_peak;
-    peak = std::max(peak, bytes_from({}, stacks_) + more);
-  }
-
-  std::array<std::uint32_t, 2> build_as_tasks(const Cell& left, const Cell& right) {
-    std::array<SubtreeInput, 2> inputs;
-    inputs[1] = take_top(right);
-    const std::uint64_t left_bytes = bytes_from(left.begin, stacks_);
-    inputs[0] = take_top(left);
-    const std::uint64_t below = bytes_from({}, stacks_);
-    if (stacks_.ids.empty()) stacks_ = {};  // gives the memory back while the tasks run
-    std::array<std::unique_ptr<Subtree>, 2> built;
-    const std::array<std::function<void()>, 2> tasks{
-        [&] { built[0] = build_subtree(context_, std::move(inputs[0]), max_depth_); },
-        [&] { built[1] = build_subtree(context_, std::move(inputs[1]), max_depth_); }};
-    context_.runner.run(tasks);
-    // As one thread does it: the right one first, while the left one waits.
-    std::uint64_t& peak = result_->counts.live_bytes_peak;
-    peak = std::max({peak, below + left_bytes + built[1]->counts.live_bytes_peak,
-                     below + built[0]->counts.live_bytes_peak});
-    return {link(std::move(built[0])), link(std::move(built[1]))};
-  }
-
-  std::uint32_t link(std::unique_ptr<Subtree> subtree) {
-    result_->nodes.push_back({BuildNode::Kind::kLink, 0, 0.0F,
-                              static_cast<std::uint32_t>(result_->linked.size()), 0});
-    result_->linked.push_back(std::move(subtree));
-    return static_cast<std::uint32_t>(result_->nodes.size() - 1);
-  }
-
-  // Takes the top cell off the stacks with ids of its own.
-  SubtreeInput take_top(const Cell& cell) {
-    SubtreeInput input{cell.box, cell.depth, cell.budget, cell.share, {}, {}};
-    if (new_ids_.size() < mesh_ids_.size()) new_ids_.resize(mesh_ids_.size());
-    input.ids.reserve(stacks_.ids.size() - cell.begin.ids);
-    for (std::size_t i = cell.begin.ids; i < stacks_.ids.size(); ++i) {
-      new_ids_[stacks_.ids[i]] = static_cast<std::uint32_t>(input.ids.size());
-      input.ids.push_back(mesh_ids_[stacks_.ids[i]]);
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto events = events_of(cell, a);
-      input.events[a].assign(events.begin(), events.end());
-      for (EventKey& key : input.events[a]) key = with_event_id(key, new_ids_[event_id(key)]);
-    }
-    cut_to(stacks_, cell.begin);
-    return input;
+    peak = std::max<std::uint64_t>(peak, (stack_.size() + right_.size()) * sizeof(Reference));
   }
 
   BuildContext& context_;
-  std::vector<std::uint32_t> mesh_ids_;
-  EventPartition partition_;
+  StopGauge stop_;
+  PlaneSearch search_;
   int max_depth_;
   std::unique_ptr<Subtree> result_;
-  EventStacks stacks_;
-  std::vector<std::uint32_t> new_ids_;
+  References stack_;
+  References right_;  ///< right part of a cell while the left one is pushed together
+  double unreported_ = 0.0;
   Cell root_;
 };
 
@@ -200,8 +132,34 @@ int depth_cap(int max_depth, std::size_t n) {
   return std::min({max_depth, static_cast<int>(by_count), kMaxKdDepth});
 }
 
+SplitPlane choose_plane(const BuildContext& context, PlaneSearch& search, Runs runs,
+                        const SweepInput& input, int depth, int max_depth, bool parallel,
+                        BuildStats& counts) {
+  const BuildParams& params = context.params;
+  const double leaf_cost = params.k_i * static_cast<double>(input.n);
+  if (input.n == 0 || leaf_cost <= params.k_t * params.empty_factor) return {};
+  const SweepResult found = search.find(runs, input, leaf_cost, parallel, counts);
+  const bool useful = found.best.cost < leaf_cost;
+  if (found.unaffordable < std::min(found.best.cost, leaf_cost)) counts.budget_reached = true;
+  if (useful && depth >= max_depth) counts.budget_reached = true;
+  return useful && depth < max_depth ? found.best : SplitPlane{};
+}
+
+Shares share_out(std::uint64_t budget, std::uint64_t n, std::uint64_t n_left,
+                 std::uint64_t n_right) {
+  const std::uint64_t total = n_left + n_right;
+  if (total == 0) return {0, budget, 1.0};
+  const std::uint64_t added = total > n ? total - n : 0;
+  const std::uint64_t rest = budget - std::min(budget, added);
+  Shares shares;
+  shares.left_budget = rest / total * n_left + rest % total * n_left / total;
+  shares.right_budget = rest - shares.left_budget;
+  shares.left_share = static_cast<double>(n_left) / static_cast<double>(total);
+  return shares;
+}
+
 std::unique_ptr<Subtree> build_subtree(BuildContext& context, SubtreeInput input, int max_depth) {
-  return SubtreeBuilder(context, input, max_depth).build();
+  return SubtreeBuilder(context, std::move(input), max_depth).build();
 }
 
 }  // namespace raykiln::render

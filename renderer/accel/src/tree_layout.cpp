@@ -8,100 +8,99 @@
 namespace raykiln::render {
 namespace {
 
-// A node that has a place but no content yet.
-struct Pending {
-  const Subtree* subtree;
-  std::uint32_t node;
-  std::uint32_t place;
-  int depth;
+/// Places that the own nodes of a subtree take.
+struct Extent {
+  std::size_t nodes = 0, blocks = 0;
+};
+
+Extent extent_of(const Subtree& subtree, std::size_t width) {
+  Extent extent;
+  for (const BuildNode& node : subtree.nodes) {
+    if (node.kind == BuildNode::Kind::kInner) extent.nodes += 2;
+    if (node.kind == BuildNode::Kind::kLeaf) extent.blocks += (node.b + width - 1) / width;
+  }
+  return extent;
+}
+
+/// Where a node goes, and the cell that it stands for.
+struct Place {
+  std::uint32_t node = 0;  ///< index in the subtree
+  std::uint32_t to = 0;    ///< index in the tree
+  int depth = 0;
   Bounds3f cell;
 };
 
-template <int W>
-void fill_lane(LeafBlock<W>& block, std::size_t lane, const std::array<Vec3f, 3>& corners,
-               std::uint32_t id) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      block.v[c][k][lane] = corners[c][static_cast<int>(k)];
-    }
-  }
-  block.id[lane] = id;
-}
+/// A subtree that is laid out by a task of its own, from these places on.
+struct Link {
+  std::uint32_t subtree = 0;
+  Place root;
+  Extent begin;
+};
 
 template <int W>
-KdNode append_blocks(const BuildContext& context, std::span<const std::uint32_t> ids,
-                     std::vector<LeafBlock<W>>& blocks) {
-  const auto first = static_cast<std::uint32_t>(blocks.size());
-  for (std::size_t i = 0; i < ids.size(); i += W) {
-    auto& block = blocks.emplace_back();
-    for (std::size_t lane = 0; lane < W; ++lane) {
-      if (i + lane < ids.size()) {
-        fill_lane(block, lane, context.corners(ids[i + lane]), ids[i + lane]);
-      } else {
-        const Vec3f point = context.corners(ids[i])[0];
-        fill_lane(block, lane, {point, point, point}, kNoHit);
+void fill_block(const BuildContext& context, std::span<const std::uint32_t> ids,
+                LeafBlock<W>& block) {
+  for (std::size_t lane = 0; lane < W; ++lane) {
+    const bool used = lane < ids.size();
+    const auto corners = context.corners(used ? ids[lane] : ids[0]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3f& p = corners[used ? c : 0];
+      for (std::size_t k = 0; k < 3; ++k) block.v[c][k][lane] = p[static_cast<int>(k)];
+    }
+    block.id[lane] = used ? ids[lane] : kNoHit;
+  }
+}
+
+/// Depth first, left before right: so the places of a subtree are neighbours.
+class SubtreeLayout {
+ public:
+  SubtreeLayout(BuildContext& context, KdTree& tree, double root_area, const Extent& begin)
+      : context_(context), tree_(tree), root_area_(root_area), next_(begin) {}
+
+  /// `extents` are those of the linked subtrees, which are left out and noted in `links`.
+  void run(const Subtree& subtree, const Place& root, std::span<const Extent> extents) {
+    pending_.push_back(root);
+    for (std::size_t step = 0; !pending_.empty(); ++step) {
+      if (step % 1024 == 0 && context_.stopped()) return;
+      const Place place = pending_.back();
+      pending_.pop_back();
+      const BuildNode& node = subtree.nodes[place.node];
+      switch (node.kind) {
+        case BuildNode::Kind::kLink:
+          links.push_back({node.a, place, next_});
+          next_.nodes += extents[node.a].nodes;
+          next_.blocks += extents[node.a].blocks;
+          break;
+        case BuildNode::Kind::kInner:
+          place_inner(place, node);
+          break;
+        case BuildNode::Kind::kLeaf:
+          place_leaf(place, std::span(subtree.references).subspan(node.a, node.b));
+          break;
       }
     }
   }
-  const auto count = static_cast<std::uint32_t>(blocks.size()) - first;
-  return make_leaf(count, count == 0 ? 0 : first);
-}
 
-class Layout {
- public:
-  Layout(BuildContext& context, KdTree& tree) : context_(context), tree_(tree) {}
-
-  bool run(const Subtree& root) {
-    tree_.nodes.assign(2, make_leaf(0, 0));
-    root_area_ = surface_area(tree_.box);
-    pending_.push_back({&root, root.root, 0, 0, tree_.box});
-    for (std::size_t step = 0; !pending_.empty(); ++step) {
-      if (step % 1024 == 0 && context_.stopped()) return false;
-      const Pending next = pending_.back();
-      pending_.pop_back();
-      place(next);
-    }
-    tree_.stats.nodes = tree_.stats.inner_nodes + tree_.stats.leaves;
-    return true;
-  }
+  std::vector<Link> links;
+  BuildStats stats;
 
  private:
-  void place(const Pending& p) {
-    const BuildNode& node = p.subtree->nodes[p.node];
-    switch (node.kind) {
-      case BuildNode::Kind::kLink: {
-        const Subtree& linked = *p.subtree->linked[node.a];
-        add_counts(linked.counts);
-        pending_.push_back({&linked, linked.root, p.place, p.depth, p.cell});
-        break;
-      }
-      case BuildNode::Kind::kInner:
-        place_inner(p, node);
-        break;
-      case BuildNode::Kind::kLeaf:
-        place_leaf(p, std::span(p.subtree->references).subspan(node.a, node.b));
-        break;
-    }
-  }
-
-  void place_inner(const Pending& p, const BuildNode& node) {
-    const auto pair = static_cast<std::uint32_t>(tree_.nodes.size());
-    tree_.nodes.resize(tree_.nodes.size() + 2);
-    tree_.nodes[p.place] = make_inner(node.axis, node.split, pair);
+  void place_inner(const Place& p, const BuildNode& node) {
+    const auto pair = static_cast<std::uint32_t>(next_.nodes);
+    next_.nodes += 2;
+    tree_.nodes[p.to] = make_inner(node.axis, node.split, pair);
     Bounds3f left = p.cell;
     Bounds3f right = p.cell;
     left.hi[node.axis] = right.lo[node.axis] = node.split;
-    pending_.push_back({p.subtree, node.b, pair + 1, p.depth + 1, right});
-    pending_.push_back({p.subtree, node.a, pair, p.depth + 1, left});
-    ++tree_.stats.inner_nodes;
-    tree_.stats.sah_cost += tree_.params.k_t * visit_probability(p.cell);
+    pending_.push_back({node.b, pair + 1, p.depth + 1, right});
+    pending_.push_back({node.a, pair, p.depth + 1, left});
+    ++stats.inner_nodes;
+    stats.sah_cost += tree_.params.k_t * visit_probability(p.cell);
   }
 
-  void place_leaf(const Pending& p, std::span<const std::uint32_t> ids) {
-    tree_.nodes[p.place] = tree_.params.leaf_width == 16
-                               ? append_blocks(context_, ids, tree_.blocks16)
-                               : append_blocks(context_, ids, tree_.blocks8);
-    auto& stats = tree_.stats;
+  void place_leaf(const Place& p, std::span<const std::uint32_t> ids) {
+    tree_.nodes[p.to] = tree_.params.leaf_width == 16 ? fill_leaf(ids, tree_.blocks16)
+                                                      : fill_leaf(ids, tree_.blocks8);
     ++stats.leaves;
     stats.empty_leaves += ids.empty() ? 1U : 0U;
     stats.references += ids.size();
@@ -110,37 +109,88 @@ class Layout {
         tree_.params.k_i * static_cast<double>(ids.size()) * visit_probability(p.cell);
   }
 
+  template <int W>
+  KdNode fill_leaf(std::span<const std::uint32_t> ids, std::vector<LeafBlock<W>>& blocks) {
+    const std::size_t first = next_.blocks;
+    for (; !ids.empty(); ids = ids.subspan(std::min<std::size_t>(W, ids.size()))) {
+      fill_block(context_, ids, blocks[next_.blocks++]);
+    }
+    const auto count = static_cast<std::uint32_t>(next_.blocks - first);
+    return make_leaf(count, count == 0 ? 0 : static_cast<std::uint32_t>(first));
+  }
+
   // Of a random line that meets the root's box to meet the cell.
   [[nodiscard]] double visit_probability(const Bounds3f& cell) const {
     return root_area_ > 0.0 ? surface_area(cell) / root_area_ : 1.0;
   }
 
-  void add_counts(const BuildStats& counts) {
-    auto& stats = tree_.stats;
-    stats.events_swept += counts.events_swept;
-    stats.events_moved += counts.events_moved;
-    stats.keys_sorted_passes += counts.keys_sorted_passes;
-    stats.clips += counts.clips;
-    stats.budget_reached = stats.budget_reached || counts.budget_reached;
-  }
-
   BuildContext& context_;
   KdTree& tree_;
-  double root_area_ = 0.0;
-  std::vector<Pending> pending_;
+  double root_area_;
+  Extent next_;
+  std::vector<Place> pending_;
 };
+
+void add_counts(const BuildStats& counts, BuildStats& stats) {
+  stats.events_swept += counts.events_swept;
+  stats.events_moved += counts.events_moved;
+  stats.keys_sorted_passes += counts.keys_sorted_passes;
+  stats.clips += counts.clips;
+  stats.budget_reached = stats.budget_reached || counts.budget_reached;
+}
+
+void add_shape(const BuildStats& part, BuildStats& stats) {
+  stats.inner_nodes += part.inner_nodes;
+  stats.leaves += part.leaves;
+  stats.empty_leaves += part.empty_leaves;
+  stats.references += part.references;
+  stats.depth = std::max(stats.depth, part.depth);
+  stats.sah_cost += part.sah_cost;
+}
 
 }  // namespace
 
-bool lay_out(BuildContext& context, const Subtree& root, KdTree& tree) {
-  const BuildStats& counts = root.counts;
-  tree.stats.events_swept += counts.events_swept;
-  tree.stats.events_moved += counts.events_moved;
-  tree.stats.keys_sorted_passes += counts.keys_sorted_passes;
-  tree.stats.clips += counts.clips;
-  tree.stats.budget_reached = counts.budget_reached;
-  tree.stats.live_bytes_peak = counts.live_bytes_peak;  // holds that of linked subtrees
-  return Layout(context, tree).run(root);
+bool lay_out(BuildContext& context, Subtree& root, KdTree& tree) {
+  const auto width = static_cast<std::size_t>(tree.params.leaf_width);
+  std::vector<Extent> extents(root.linked.size());
+  context.for_each(extents.size(),
+                   [&](std::size_t i) { extents[i] = extent_of(*root.linked[i], width); });
+  Extent all = extent_of(root, width);
+  std::uint64_t built = root.bytes();
+  add_counts(root.counts, tree.stats);
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    all.nodes += extents[i].nodes;
+    all.blocks += extents[i].blocks;
+    built += root.linked[i]->bytes();
+    add_counts(root.linked[i]->counts, tree.stats);
+  }
+  tree.nodes.assign(2 + all.nodes, make_leaf(0, 0));
+  if (tree.params.leaf_width == 16) {
+    tree.blocks16.resize(all.blocks);
+  } else {
+    tree.blocks8.resize(all.blocks);
+  }
+
+  const double root_area = surface_area(tree.box);
+  SubtreeLayout top(context, tree, root_area, {2, 0});
+  top.run(root, {root.root, 0, 0, tree.box}, extents);
+  add_shape(top.stats, tree.stats);
+  std::vector<BuildStats> parts(top.links.size());
+  context.for_each(parts.size(), [&](std::size_t i) {
+    const Link& link = top.links[i];
+    auto& subtree = root.linked[link.subtree];
+    SubtreeLayout layout(context, tree, root_area, link.begin);
+    layout.run(*subtree, {subtree->root, link.root.to, link.root.depth, link.root.cell}, {});
+    parts[i] = layout.stats;
+    subtree.reset();
+  });
+  for (const BuildStats& part : parts) add_shape(part, tree.stats);
+  tree.stats.nodes = tree.stats.inner_nodes + tree.stats.leaves;
+  const std::uint64_t laid_out = tree.nodes.size() * sizeof(KdNode) +
+                                 tree.blocks8.size() * sizeof(LeafBlock<8>) +
+                                 tree.blocks16.size() * sizeof(LeafBlock<16>);
+  tree.stats.live_bytes_peak = std::max(root.counts.live_bytes_peak, built + laid_out);
+  return !context.stopped();
 }
 
 }  // namespace raykiln::render

@@ -1,4 +1,4 @@
-// Gives the nodes of all subtrees their final places: the one pass that makes the bytes of a tree
+// Gives the nodes of all subtrees their final places: the pass that makes the bytes of a tree
 // independent of how its build was cut into tasks.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace raykiln::render {
 
-/// Fills nodes, blocks and the statistics of `tree`, whose box and params are set. False when it
-/// was stopped.
-[[nodiscard]] bool lay_out(BuildContext& context, const Subtree& root, KdTree& tree);
+/// Fills nodes, blocks and the statistics of `tree`, whose box and params are set; frees the linked
+/// subtrees as it goes. False when it was stopped.
+[[nodiscard]] bool lay_out(BuildContext& context, Subtree& root, KdTree& tree);
 
 }  // namespace raykiln::render

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bench_report.hpp"
+#include "raykiln/accel/build_limits.hpp"
 #include "support/thread_runner.hpp"
 
 namespace {
@@ -19,6 +20,7 @@ struct Options {
   std::vector<std::string> scenes;
   std::vector<std::size_t> sizes{10'000, 100'000, 1'000'000, 2'000'000};
   BuildParams params;
+  raykiln::render::BuildLimits limits;
   int threads = 1;
   int repeat = 1;
   std::uint64_t seed = 1;
@@ -56,7 +58,7 @@ Measured measure(const raykiln::test::TestMesh& mesh, const Options& options, Ta
   result.best.wall = std::numeric_limits<double>::infinity();
   for (int i = 0; i < options.repeat; ++i) {
     const Stopwatch watch;
-    const auto tree = raykiln::render::build_kdtree(mesh.view(), options.params, runner);
+    const auto tree = raykiln::render::build_kdtree(mesh.view(), options.params, runner, options.limits);
     const Seconds seconds = watch.elapsed();
     if (seconds.wall < result.best.wall) result.best = seconds;
     result.stats = raykiln::render::build_stats(*tree);
@@ -126,7 +128,7 @@ class Bench {
       runner_ = std::make_unique<raykiln::render::SerialTaskRunner>();
     }
     std::printf(
-        "mesh              N   wall s    cpu s Mtri/s ns/NlgN op/NlgN ref/N   B/N  live/N depth   "
+        "mesh              N   wall s    cpu s Mtri/s ns/NlgN op/NlgN ref/N   B/N  peak/N depth   "
         "cost clip/N\n");
   }
 
@@ -226,6 +228,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{2}, std::size_t{100'000'000}));
   app.add_option("--leaf-width", options.params.leaf_width, "8 or 16")->check(CLI::IsMember({8, 16}));
+  app.add_option("--max-bytes", options.limits.max_bytes, "of the build; 0: no limit");
   app.add_option("--k-t", options.params.k_t, "cost of a step");
   app.add_option("--k-i", options.params.k_i, "cost of a triangle");
   app.add_option("--threads", options.threads, "threads of the build")->check(CLI::Range(1, 256));

@@ -1,6 +1,6 @@
 // The sweep finds the cheapest plane: recounted from the definition for every candidate.
 #include "event_key.hpp"
-#include "event_partition.hpp"
+#include "plane_search.hpp"
 #include "sah_sweep.hpp"
 #include "support/accel_testing.hpp"
 
@@ -18,9 +18,9 @@ struct SmallSet {
   std::vector<Bounds3f> extents;
 };
 
-SmallSet random_set(TestRandom& random) {
+SmallSet random_set(TestRandom& random, std::uint32_t most = 24) {
   SmallSet set;
-  const std::uint32_t n = 1 + random.below(24);
+  const std::uint32_t n = 1 + random.below(most);
   const bool on_grid = random.below(2) == 0;
   for (std::uint32_t i = 0; i < n; ++i) {
     Bounds3f b;
@@ -89,7 +89,6 @@ long double best_by_definition(const SmallSet& set, const BuildParams& params, i
 }
 
 TEST(GreedyOptimality, SweepEqualsBruteForceRecount) {
-  render::SerialTaskRunner runner;
   TestRandom random(11);
   std::size_t planes = 0;
   for (int trial = 0; trial < 3000; ++trial) {
@@ -97,7 +96,6 @@ TEST(GreedyOptimality, SweepEqualsBruteForceRecount) {
     BuildParams params;
     params.k_i = 0.25 + static_cast<double>(random.uniform());
     const std::uint64_t budget = random.below(3) == 0 ? random.below(4) : 1000;
-    BuildContext context({}, params, runner);
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<EventKey> events;
       for (std::uint32_t id = 0; id < set.extents.size(); ++id) {
@@ -105,7 +103,7 @@ TEST(GreedyOptimality, SweepEqualsBruteForceRecount) {
       }
       std::sort(events.begin(), events.end());
       const auto n = static_cast<std::uint32_t>(set.extents.size());
-      const auto found = render::sweep_axis(events, axis, {set.cell, n, budget}, context).best;
+      const auto found = render::sweep_axis(events, axis, {set.cell, n, budget}, params).best;
       const long double best = best_by_definition(set, params, axis, budget);
       if (found.axis < 0) {
         EXPECT_FALSE(best < std::numeric_limits<long double>::infinity());
@@ -122,6 +120,57 @@ TEST(GreedyOptimality, SweepEqualsBruteForceRecount) {
     }
   }
   EXPECT_GT(planes, 5000U);
+}
+
+// What the builder asks: bins and counts must find the very plane that three full sweeps find.
+TEST(GreedyOptimality, SearchFindsThePlaneOfTheSweepBitForBit) {
+  render::SerialTaskRunner runner;
+  TestRandom random(12);
+  std::size_t planes = 0, beyond_budget = 0;
+  for (int trial = 0; trial < 1200; ++trial) {
+    const SmallSet set = random_set(random, trial % 8 == 0 ? 3000U : 60U);
+    BuildParams params;
+    params.k_i = trial % 3 == 0 ? 0.25 : 0.05 + static_cast<double>(random.uniform());
+    BuildContext context({}, params, runner);
+    const auto n = static_cast<std::uint32_t>(set.extents.size());
+    const std::uint64_t budget = random.below(3) == 0 ? random.below(4) : 100'000;
+    const render::SweepInput input{set.cell, n, budget};
+    const double leaf_cost = params.k_i * n;
+    render::SweepResult expected;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<EventKey> events;
+      for (const Bounds3f& b : set.extents) render::append_events(b.lo[axis], b.hi[axis], 0, events);
+      std::sort(events.begin(), events.end());
+      const auto found = render::sweep_axis(events, axis, input, params);
+      if (found.best.cost < expected.best.cost) expected.best = found.best;
+      expected.unaffordable = std::min(expected.unaffordable, found.unaffordable);
+    }
+    std::vector<render::Reference> references;
+    for (const Bounds3f& b : set.extents) references.push_back(render::make_reference(b, 0));
+    // In one piece and in three.
+    const std::span<const render::Reference> all(references);
+    const std::array<std::span<const render::Reference>, 3> pieces{
+        all.first(n / 3), all.subspan(n / 3, n / 4), all.subspan(n / 3 + n / 4)};
+    render::PlaneSearch search(context);
+    for (const render::Runs runs : {render::Runs(&all, 1), render::Runs(pieces)}) {
+      render::BuildStats counts;
+      const auto found = search.find(runs, input, leaf_cost, runs.size() > 1, counts);
+      const bool useful = expected.best.cost < leaf_cost;
+      ASSERT_EQ(found.best.cost < leaf_cost, useful) << trial;
+      const double bound = std::min(expected.best.cost, leaf_cost);
+      EXPECT_EQ(found.unaffordable < std::min(found.best.cost, leaf_cost),
+                expected.unaffordable < bound);
+      beyond_budget += expected.unaffordable < bound ? 1U : 0U;
+      if (!useful) continue;
+      ++planes;
+      EXPECT_EQ(found.best.axis, expected.best.axis) << trial;
+      EXPECT_EQ(found.best.position, expected.best.position) << trial;
+      EXPECT_EQ(found.best.planar_left, expected.best.planar_left) << trial;
+      EXPECT_EQ(found.best.cost, expected.best.cost) << trial;
+    }
+  }
+  EXPECT_GT(planes, 1000U);
+  EXPECT_GT(beyond_budget, 50U);
 }
 
 // Every split lowers the expected cost, as long as empty space is not favoured beyond its cost.

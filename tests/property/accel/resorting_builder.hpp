@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "build_context.hpp"
-#include "event_partition.hpp"
 #include "polygon_clip.hpp"
-#include "root_events.hpp"
+#include "root_references.hpp"
 #include "sah_sweep.hpp"
 #include "subtree_builder.hpp"
 #include "support/accel_testing.hpp"
@@ -28,10 +27,12 @@ class ResortingBuilder {
   Resorted run() {
     const render::RootInput root = render::make_root(context_);
     std::vector<Part> parts;
-    for (const std::uint32_t id : root.subtree.ids) {
-      Part part{id, {}};
-      for (const Vec3f& corner : context_.corners(id)) part.box.grow(corner);
-      parts.push_back(part);
+    for (const render::Run& run : root.subtree.runs) {
+      for (const render::Reference& reference : run.view()) {
+        Part part{reference.triangle, {}};
+        for (const Vec3f& corner : context_.corners(part.id)) part.box.grow(corner);
+        parts.push_back(part);
+      }
     }
     const auto n = static_cast<double>(parts.size());
     const auto budget = static_cast<std::uint64_t>((context_.params.max_duplication - 1.0) * n);
@@ -99,7 +100,7 @@ class ResortingBuilder {
         return a < b;
       });
       const auto found = render::sweep_axis(
-          events, axis, {cell, static_cast<std::uint32_t>(parts.size()), budget}, context_);
+          events, axis, {cell, static_cast<std::uint32_t>(parts.size()), budget}, params);
       result_.operations += events.size();
       if (found.best.cost < best.cost) best = found.best;
     }

@@ -1,4 +1,5 @@
 // Meshes at the borders of what can be built.
+#include "raykiln/accel/build_limits.hpp"
 #include "support/accel_testing.hpp"
 
 namespace raykiln::test {
@@ -196,6 +197,27 @@ TEST(BuildEdgeCases, OpaqueFlagsAreChecked) {
             render::build_kdtree({mesh.positions, mesh.triangles, flags}, {}, runner);
       },
       std::invalid_argument);
+}
+
+TEST(BuildMemory, ByteLimitHoldsAndIsReported) {
+  const TestMesh mesh = slivers(20'000);
+  render::SerialTaskRunner runner;
+  const auto limited_to = [&](std::uint64_t bytes) {
+    render::BuildLimits limits;
+    limits.max_bytes = bytes;
+    return render::build_stats(*render::build_kdtree(mesh.view(), {}, runner, limits));
+  };
+  const auto free = limited_to(0);
+  for (const std::uint64_t limit : {std::uint64_t{12} << 20, std::uint64_t{20} << 20}) {
+    const auto stats = limited_to(limit);
+    EXPECT_LE(stats.live_bytes_peak, limit);
+    EXPECT_GE(stats.live_bytes_peak, stats.bytes);
+    EXPECT_LT(stats.references, free.references);
+    EXPECT_TRUE(stats.budget_reached);
+  }
+  // Never less than what holds every triangle once.
+  EXPECT_EQ(limited_to(1).references, mesh.triangles.size());
+  EXPECT_EQ(limited_to(std::uint64_t{1} << 40).references, free.references);
 }
 
 }  // namespace

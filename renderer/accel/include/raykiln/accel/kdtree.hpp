@@ -40,8 +40,8 @@ struct BuildStats {
   std::uint64_t nodes = 0, inner_nodes = 0, leaves = 0, empty_leaves = 0, references = 0;
   std::uint64_t events_swept = 0, events_moved = 0, keys_sorted_passes = 0, clips = 0;
   std::uint64_t bytes = 0;
-  /// Most bytes of events and ids that wait or are in work at once, in the order of one thread: the
-  /// same for any runner.
+  /// Most bytes held at once, in the order of one thread: the same for any runner. Each further
+  /// thread may add a cell of 2 MiB. Not in it: the mesh that was given and the tree's copy of it.
   std::uint64_t live_bytes_peak = 0;
   int depth = 0;
   bool budget_reached = false;  ///< the reference budget or the depth cap stopped a useful split

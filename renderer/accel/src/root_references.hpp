@@ -1,4 +1,4 @@
-// From a mesh to the input of the root: which triangles count, their box, their sorted events.
+// From a mesh to the input of the root: which triangles count, their boxes, the box of all.
 #pragma once
 
 #include "subtree_builder.hpp"
@@ -8,7 +8,6 @@ namespace raykiln::render {
 struct RootInput {
   SubtreeInput subtree;
   std::uint64_t dropped_degenerate = 0;
-  std::uint64_t sort_operations = 0;
 };
 
 /// Undefined contents after a stop.

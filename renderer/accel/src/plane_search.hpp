@@ -1,0 +1,77 @@
+// The cheapest plane of a cell, exactly, without keeping events sorted.
+//
+// Large cells: counts in bins bound the cost of all planes of a bin from both sides; only bins that
+// may hold the cheapest plane have their events gathered, sorted and swept. Small cells: sides are
+// counted for every plane. Both give what a sweep over all sorted events gives, ties included.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "cell_bins.hpp"
+#include "reference.hpp"
+#include "sah_sweep.hpp"
+
+namespace raykiln::render {
+
+class PlaneSearch {
+ public:
+  explicit PlaneSearch(BuildContext& context) : context_(context) {}
+
+  /// The first of the cheapest planes in the order of axis, position and planar_left first, among
+  /// those within the budget; if its cost is not below `leaf_cost`, then no plane's is.
+  /// `unaffordable` tells the least cost beyond the budget if that is below both. With `parallel`
+  /// the runs are counted as tasks. Undefined after a stop.
+  [[nodiscard]] SweepResult find(Runs runs, const SweepInput& input, double leaf_cost,
+                                 bool parallel, BuildStats& counts);
+
+ private:
+  using Choosers = std::array<PlaneChooser, 3>;
+
+  /// The events of one bin that may hold the cheapest plane.
+  struct Segment {
+    std::size_t axis = 0, bin = 0;
+    double least = 0.0;         ///< no plane of the bin costs less
+    std::uint32_t n_left = 0;   ///< extents that begin before the bin
+    std::uint32_t n_gone = 0;   ///< extents that end before it
+    std::size_t begin = 0, end = 0;  ///< in keys_
+  };
+  using Cursors = std::vector<std::size_t>;
+  /// Of each bin: extents that begin and that end before it, and no plane in it costs less than
+  /// `least` before the empty factor.
+  struct BinBounds {
+    std::array<std::uint32_t, kMaxBins + 2> n_left, n_gone;
+    std::array<double, kMaxBins + 1> least;
+  };
+
+  // Small pieces of work are not worth a look: the caller looks between cells.
+  bool looks_for_stop(std::size_t work) { return work >= kStopInterval && context_.stopped(); }
+  void count_bins(Runs runs, const BinGrid& grid, bool parallel);
+  void choose_segments(const BinGrid& grid, const SweepInput& input, double leaf_cost,
+                       const Choosers& choosers);
+  // Fills bounds_[axis]; gives a cost that the axis' cheapest plane does not exceed.
+  double bound_axis(std::size_t axis, const BinGrid& grid, const SweepInput& input,
+                    const CellCost& cost);
+  void gather(Runs runs, const BinGrid& grid, bool parallel);
+  void gather_run(std::span<const Reference> run, const BinGrid& grid, std::size_t* cursors);
+  void sweep_segments(const SweepInput& input, double leaf_cost, Choosers& choosers,
+                      BuildStats& counts);
+
+  BuildContext& context_;
+  BinCounts bins_;
+  std::array<BinBounds, 3> bounds_;
+  std::vector<BinCounts> run_bins_;  ///< of each run, when they are counted as tasks
+  std::vector<Segment> segments_;
+  std::array<std::array<std::uint32_t, kMaxBins + 2>, 3> segment_of_;
+  std::array<bool, 3> gathered_{};  ///< axes with segments
+  std::vector<EventKey> keys_;
+  std::vector<std::uint64_t> sort_scratch_;
+};
+
+/// Counts the triangles on both sides of every plane. For few references.
+inline constexpr std::size_t kCountingMax = 24;
+void consider_by_counting(std::span<const Reference> references, const SweepInput& input,
+                          double leaf_cost, const BuildParams& params,
+                          std::span<PlaneChooser, 3> choosers, BuildStats& counts);
+
+}  // namespace raykiln::render
