@@ -37,6 +37,7 @@ class Row:
     options: dict = field(default_factory=dict)  # of raykiln's job
     facets: str = "stock"      # stock: Mitsuba's own; gltf: gltf_facets.py; check: that against its own
     judged: bool = True
+    known_bias: float = 0.0    # share of the mean that raykiln's documentation gives away
     samples: int = 48          # of a pixel in each render
     size: tuple = (64, 64)
 
@@ -51,7 +52,7 @@ ROWS = [
     Row("plastic", "diffuse base below facets, roughness 0.4", scenes.plastic, facets="gltf"),
     Row("glass_smooth", "body of glass", scenes.glass_body(0)),
     Row("glass_absorbing", "absorbing body of glass", scenes.glass_body(0, [0.9, 0.4, 0.2])),
-    Row("glass_rough", "rough glass, roughness 0.4", scenes.glass_body(0.4), facets="gltf"),
+    Row("glass_rough", "rough glass, roughness 0.4", scenes.glass_body(0.4), facets="gltf", known_bias=0.04),
     Row("glass_check", "Mitsuba's plug-in against its `roughdielectric`", scenes.glass_body(0.4), facets="check"),
     Row("textured", "textured glTF: colour and emission, turned and scaled", scenes.textured),
     Row("environment", "environment light", scenes.environment),
@@ -120,7 +121,7 @@ def judge(row, daemon, renders) -> dict:
         return result | {"missing": str(missing), "seconds": time.monotonic() - start}
     worst = int(np.argmax(np.abs(verdict.difference / verdict.sigma)))
     return result | {
-        "passed": verdict.passes(), "accepted": verdict.accepted, "block": verdict.worst_block,
+        "passed": verdict.passes(row.known_bias), "exact": verdict.passes(), "accepted": verdict.accepted, "block": verdict.worst_block,
         "block_limit": verdict.block_limit, "mean_z": float(verdict.mean_z[worst]),
         "difference": float(verdict.difference[worst]), "sigma": float(verdict.sigma[worst]),
         "seconds": time.monotonic() - start}
@@ -129,7 +130,8 @@ def judge(row, daemon, renders) -> dict:
 def line(result) -> str:
     if "missing" in result:
         return f"| {result['title']} | | | | | missing; {result['missing']} |"
-    word = ("equal" if result["passed"] else "DIFFERENT") if result["judged"] else "differs as it must"
+    word = "equal" if result["exact"] else "within the stated bias" if result["passed"] else "DIFFERENT"
+    word = word if result["judged"] else "differs as it must"
     return (f"| {result['title']} | {100 * result['accepted']:.2f} | {result['mean_z']:+.2f} | "
             f"{100 * result['difference']:+.2f} +- {100 * result['sigma']:.2f} | "
             f"{result['block']:.1f} | {word} |")

@@ -206,6 +206,8 @@ class GlassFacets(Facets):
         f, cos_t, eta_it, eta_ti = mi.fresnel(dr.dot(si.wi, h), self.index)
         mirrors = sample1 < f
         wo = dr.select(mirrors, mi.reflect(si.wi, h), mi.refract(si.wi, h, cos_t, eta_ti))
+        # Light that leaves to the wrong side of the surface is lost, and not what `eval` has there.
+        active &= mirrors == (i * mi.Frame3f.cos_theta(wo) > 0)
         value, pdf = self.eval_pdf(ctx, si, wo, active)
         kind = dr.select(mirrors, mi.UInt32(+mi.BSDFFlags.GlossyReflection), mi.UInt32(+mi.BSDFFlags.GlossyTransmission))
         bs, weight = self.drawn(sample1, wo, value, pdf, self.m_flags, dr.select(mirrors, 1.0, eta_it), active)

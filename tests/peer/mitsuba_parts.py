@@ -108,8 +108,10 @@ def environment(folder: Path, entry: dict) -> dict:
     texels = np.array(mi.Bitmap(str(folder / entry["file"])).convert(
         mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
     height, width = texels.shape[:2]
-    rows = np.minimum((np.linspace(0, 1, 8 * height + 1) * height).astype(int), height - 1)
-    fine = np.repeat(texels[rows], 8, axis=1)
+    # A row of Mitsuba's that lies on the border of two texels is their mean, so that nothing is shifted.
+    places = np.arange(8 * height + 1) / 8
+    above, below = (np.clip(np.floor(places + e).astype(int), 0, height - 1) for e in (-1e-6, 1e-6))
+    fine = np.repeat(0.5 * (texels[above] + texels[below]), 8, axis=1).astype(np.float32)
     # The middle of a row is -z in raykiln and +z in Mitsuba.
     turn = mi.ScalarTransform4f().rotate([0, 1, 0], entry.get("rotation_degrees", 0) + TURN)
     return {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(fine)),

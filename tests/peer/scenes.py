@@ -142,19 +142,19 @@ def environment(folder: Path):
         "materials": {"mirror": {"diffuse": [0, 0, 0], "specular": [0.9, 0.9, 0.9], "specular_exp": 1e15}}})
 
 
-def many_emitters(folder: Path, of_each=100):
-    """Ten kinds of small triangles that look down from the ceiling, of powers over three decades."""
+def many_emitters(folder: Path, kinds=10):
+    """Closed bodies of four triangles, 25 of each kind, of powers over three decades: 100 emitters a kind."""
     rng = np.random.default_rng(11)
     meshes, materials = room(lamp=0), dict(ROOM_MTL)
     del materials["lamp"]
-    for k in range(10):
-        radiance = 2000 * 10 ** (-3 * k / 9) * rng.uniform(0.3, 1.0, 3)
+    corners = 0.004 * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])  # outwards
+    for k in range(kinds):
+        radiance = 300 * 10 ** (-3 * k / (kinds - 1)) * rng.uniform(0.3, 1.0, 3)
         materials[f"bulb{k}"] = ["Kd 0 0 0", "Ke " + " ".join(f"{x:.6g}" for x in radiance)]
-        centres = rng.uniform(-0.95, 0.95, (of_each, 2))
-        size = 0.004
-        corners = np.array([[0, 0], [0, size], [size, 0]]) + centres[:, None]  # a x b looks up
-        positions = np.stack([corners[..., 0], np.full(corners.shape[:2], 1.99), corners[..., 1]], -1)
-        meshes.append(Mesh(positions.reshape(-1, 3), np.arange(3 * of_each).reshape(-1, 3)[:, ::-1].copy(), f"bulb{k}"))
+        centres = rng.uniform((-0.9, 1.5, -0.9), (0.9, 1.9, 0.9), (25, 3))
+        meshes.append(Mesh((centres[:, None] + corners).reshape(-1, 3),
+                           (4 * np.arange(25)[:, None, None] + faces).reshape(-1, 3), f"bulb{k}"))
     scene_files.write_obj(folder, meshes, materials, {"camera": FRONT, "background": [0, 0, 0]})
 
 

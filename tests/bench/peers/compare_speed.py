@@ -115,7 +115,7 @@ def measure(name, options) -> dict:
     for method, renders in pictures.items():
         error = float((np.var(renders, axis=0, ddof=1) * weight).mean())
         seconds = float(np.median(cpu[method]))
-        result[method] = {"samples": samples, "cpu_s": seconds, "wall_s": float(np.median(wall[method])),
+        result[method] = {"side": options.side, "samples": samples, "cpu_s": seconds, "wall_s": float(np.median(wall[method])),
                           "relmse": error, "to_target_s": seconds * error / TARGET,
                           "bias": float(np.mean(renders) / r.mean() - 1)}
         print(f"{name} | {method}: {result[method]}", flush=True)
@@ -157,19 +157,24 @@ def main():
     parser.add_argument("--side", type=int, default=128, help="of the picture, pixels")
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--no-efficiency", action="store_true", help="leave the second table out")
     parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
     options = parser.parse_args()
     chosen = [n for n in SCENES if not options.only or n in options.only]
     options.done = chosen
-    results = {name: measure(name, options) for name in chosen}
     WORK.mkdir(parents=True, exist_ok=True)
-    (WORK / "speed.json").write_text(json.dumps(results, indent=1))
+    record = WORK / "speed.json"
+    results = json.loads(record.read_text()) if options.only and record.exists() else {}
+    for name in chosen:
+        results[name] = measure(name, options)
+        record.write_text(json.dumps(results, indent=1))
+    results = {name: results[name] for name in SCENES if name in results}
     first = next(iter(results.values()))
     lines = [f"| scene | {' | '.join(first)} | raykiln / Mitsuba, better of each |", "|---" * (len(first) + 2) + "|"]
     lines += [line(name, result) for name, result in results.items()]
-    lines += ["", f"Processor seconds to relMSE {TARGET} (in brackets: seconds and relMSE of one render); {options.side} x {options.side} pixels, "
-              f"{options.turns} turns, {options.threads} threads, Mitsuba {mi.__version__}.", ""]
-    lines += efficiency(options)
+    lines += ["", f"Processor seconds to relMSE {TARGET} (in brackets: seconds and relMSE of one render); pictures of "
+              f"{sorted({v['side'] for r in results.values() for v in r.values()})} pixels a side, {options.threads} threads, Mitsuba {mi.__version__}.", ""]
+    lines += efficiency(options) if not options.no_efficiency else []
     print("\n".join(lines))
     if options.readme:
         path = Path(__file__).with_name("README.md")

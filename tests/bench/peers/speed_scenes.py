@@ -42,5 +42,5 @@ SCENES = {
     "glass and mirror spheres": (scenes.glass_and_mirror, 64),
     "scan, 871k triangles": (scan, 16),
     "eight point lights": (eight_points, 16),
-    "500 small lights": (lambda folder: scenes.many_emitters(folder, 50), 64),
+    "500 small lights": (lambda folder: scenes.many_emitters(folder, 5), 64),
 }
