@@ -177,7 +177,7 @@ def main() -> int:
     if options.readme:
         write_readme(table([known[row.name] for row in ROWS if row.name in known],
                            f"Mitsuba {mi.__version__}; {options.renders} renders of independent seeds a program, "
-                           f"{ROWS[0].samples} samples of 64 x 64 pixels each."))
+                           f"{options.samples or ROWS[0].samples} samples of 64 x 64 pixels each."))
     judged = [r for r in results if r["judged"] and "missing" not in r]
     passed = sum(r["passed"] for r in judged)
     print(f"{sum('missing' in r for r in results)} missing")
