@@ -13,11 +13,21 @@ double largest_channel(const Rgb& c) {
   return static_cast<double>(std::max({c.x, c.y, c.z, 0.0F}));
 }
 
-double triangle_area(const TriangleMesh& mesh, std::uint32_t id) {
+/// Normal to the triangle, as long as twice its area.
+Vec3d triangle_span(const TriangleMesh& mesh, std::uint32_t id) {
   const auto& corner = mesh.triangles[id];
   const Vec3d p0(mesh.positions[corner[0]]);
-  return 0.5 * length(cross(Vec3d(mesh.positions[corner[1]]) - p0,
-                            Vec3d(mesh.positions[corner[2]]) - p0));
+  return cross(Vec3d(mesh.positions[corner[1]]) - p0, Vec3d(mesh.positions[corner[2]]) - p0);
+}
+
+double triangle_area(const TriangleMesh& mesh, std::uint32_t id) {
+  return 0.5 * length(triangle_span(mesh, id));
+}
+
+EmitterBounds bounds_of(const TriangleMesh& mesh, std::uint32_t id, double power) {
+  Bounds3f box;
+  for (const std::uint32_t corner : mesh.triangles[id]) box.grow(mesh.positions[corner]);
+  return {.lo = box.lo, .hi = box.hi, .axis = Vec3f(normalize(triangle_span(mesh, id))), .power = power};
 }
 
 /// What the emission of each material counts for, W sr^-1 m^-2: its largest channel times the mean of
@@ -65,6 +75,12 @@ Emitters::Emitters(const Scene& scene) {
     power.push_back(weight);
   }
   distribution_ = DiscreteDistribution(power);
+  std::vector<EmitterBounds> leaves;
+  leaves.reserve(triangles_.size());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    leaves.push_back(bounds_of(scene.mesh, triangles_[i], power[i]));
+  }
+  tree_ = LightTree(leaves);
   if (has_triangles()) {
     pdf_area_.reserve(scene.materials.size());
     for (const double weight : weights) pdf_area_.push_back(weight / distribution_.total());
@@ -75,18 +91,42 @@ Emitters::Emitters(const Scene& scene) {
   environment_ = environment_of(scene);
 }
 
-EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex) const {
-  const std::size_t drawn = distribution_.sample(uniform(vertex, Dimension::kLightChoice));
+EmitterSample Emitters::point_on(const Scene& scene, std::uint32_t triangle,
+                                 const VertexKey& vertex) const {
   const TrianglePoint b = sample_uniform_triangle(uniform(vertex, Dimension::kLightU),
                                                   uniform(vertex, Dimension::kLightV));
   EmitterSample sample;
-  sample.triangle = triangles_[drawn];
+  sample.triangle = triangle;
   sample.u = b.b1;
   sample.v = b.b2;
-  sample.point = surface_point(scene.mesh, triangles_[drawn], b.b1, b.b2);
+  sample.point = surface_point(scene.mesh, triangle, b.b1, b.b2);
   sample.radiance = Rgbd(scene.materials[sample.point.material].emission);
+  return sample;
+}
+
+EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex) const {
+  const std::size_t drawn = distribution_.sample(uniform(vertex, Dimension::kLightChoice));
+  EmitterSample sample = point_on(scene, triangles_[drawn], vertex);
   sample.pdf_area = pdf_area(sample.point.material);
   return sample;
+}
+
+EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex,
+                               const EmitterReceiver& receiver) const {
+  const auto drawn = tree_.sample(receiver, uniform(vertex, Dimension::kLightChoice));
+  if (!drawn) return {};
+  const std::uint32_t triangle = triangles_[drawn->emitter];
+  EmitterSample sample = point_on(scene, triangle, vertex);
+  sample.pdf_area = drawn->probability / triangle_area(scene.mesh, triangle);
+  return sample;
+}
+
+double Emitters::pdf_area(const Scene& scene, std::uint32_t triangle,
+                          const EmitterReceiver& receiver) const {
+  const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
+  if (found == triangles_.end() || *found != triangle) return 0.0;
+  const auto emitter = static_cast<std::uint32_t>(found - triangles_.begin());
+  return tree_.probability(receiver, emitter) / triangle_area(scene.mesh, triangle);
 }
 
 }  // namespace raykiln::render

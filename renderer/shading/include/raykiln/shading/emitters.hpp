@@ -9,6 +9,8 @@
 #include "raykiln/sampling/discrete_distribution.hpp"
 #include "raykiln/sampling/random.hpp"
 #include "raykiln/scene/scene.hpp"
+#include "raykiln/shading/emitter_choice.hpp"
+#include "raykiln/shading/light_tree.hpp"
 #include "raykiln/shading/surface_point.hpp"
 
 namespace raykiln::render {
@@ -21,12 +23,12 @@ struct EmitterSample {
   std::uint32_t triangle = 0;
   double u = 0.0, v = 0.0;  ///< barycentrics in it
   Rgbd radiance{0.0};  ///< the same to both sides, of a white texture, W sr^-1 m^-2
-  double pdf_area = 0.0;  ///< m^-2
+  double pdf_area = 0.0;  ///< m^-2; 0 where nothing can be drawn
 };
 
 /// Emitting triangles, drawn with probability proportional to area times the largest channel of
-/// their radiance, times the mean of its texture (not luminance: permuting channels must not change a draw), then uniformly by
-/// area; the lights without a surface that shine at all; the environment map, if there is one.
+/// their radiance, times the mean of its texture (not luminance: permuting channels must not change a draw), or, from a tree,
+/// by what they may bring to a receiver; then uniformly by area; the lights without a surface that shine at all; the environment map, if there is one.
 /// Triangles of zero area or radiance are left out.
 class Emitters {
  public:
@@ -36,7 +38,7 @@ class Emitters {
   /// Of the tables, but for the environment's; 0 where nothing shines.
   [[nodiscard]] std::size_t bytes() const {
     return triangles_.capacity() * sizeof(std::uint32_t) + distribution_.bytes() +
-           pdf_area_.capacity() * sizeof(double) + point_lights_.capacity() * sizeof(PointLight) +
+           pdf_area_.capacity() * sizeof(double) + tree_.bytes() + point_lights_.capacity() * sizeof(PointLight) +
            spot_lights_.capacity() * sizeof(SpotLight) +
            directional_lights_.capacity() * sizeof(DirectionalLight);
   }
@@ -56,8 +58,26 @@ class Emitters {
   /// Precondition: has_triangles().
   [[nodiscard]] double pdf_area(std::uint32_t material) const { return pdf_area_[material]; }
 
+  /// Is the tree to be used where this is asked for?
+  [[nodiscard]] bool by_tree(EmitterChoice choice) const {
+    if (choice == EmitterChoice::kAuto) return triangles_.size() >= kTreeFrom;
+    return has_triangles() && choice == EmitterChoice::kTree;
+  }
+
+  /// The same from the tree, with the same dimensions; pdf_area is 0 where no emitter can light the receiver.
+  [[nodiscard]] EmitterSample sample(const Scene& scene, const VertexKey& vertex,
+                                     const EmitterReceiver& receiver) const;
+
+  /// Density per area with which that finds a point of this triangle, m^-2; 0 for one that is never drawn.
+  [[nodiscard]] double pdf_area(const Scene& scene, std::uint32_t triangle,
+                                const EmitterReceiver& receiver) const;
+
  private:
-  std::vector<std::uint32_t> triangles_;
+  [[nodiscard]] EmitterSample point_on(const Scene& scene, std::uint32_t triangle,
+                                       const VertexKey& vertex) const;
+
+  std::vector<std::uint32_t> triangles_;  ///< ascending
+  LightTree tree_;                        ///< over triangles_
   DiscreteDistribution distribution_;
   std::vector<double> pdf_area_;  ///< one a material; empty without triangles
   std::vector<PointLight> point_lights_;

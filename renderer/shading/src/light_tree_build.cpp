@@ -1,0 +1,203 @@
+#include "light_tree_build.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace raykiln::render::light_tree {
+namespace {
+
+using Node = LightTree::Node;
+
+constexpr int kBins = 16;
+/// From here on halves: with at most 31 halvings a way fits into 63 bits.
+constexpr int kDeepestSplitByCost = 30;
+/// What normals in all directions cost beyond parallel ones, in the measure of Conty Estevez & Kulla 2018:
+/// (2 pi + pi^2 / 2) / pi - 1 for a cone of half angle pi/2, whose normals are 1/2 on average.
+constexpr double kCostOfSpread = 2.0 * 2.57;
+
+Vec3d middle(const EmitterBounds& e) { return 0.5 * (Vec3d(e.lo) + Vec3d(e.hi)); }
+
+/// What a set of emitters is for the cost.
+struct Cluster {
+  Bounds3f box;
+  Vec3d normals{0.0};  ///< times power, all on one side of a reference
+  double power = 0.0;
+  std::size_t count = 0;
+
+  void add(const EmitterBounds& e, const Vec3d& reference) {
+    box.grow(e.lo);
+    box.grow(e.hi);
+    const Vec3d axis(e.axis);
+    normals += (dot(axis, reference) < 0.0 ? -e.power : e.power) * axis;
+    power += e.power;
+    ++count;
+  }
+  void add(const Cluster& other) {
+    if (other.count == 0) return;
+    box.grow(other.box.lo);
+    box.grow(other.box.hi);
+    normals += other.normals;
+    power += other.power;
+    count += other.count;
+  }
+  /// Power times squared diagonal times a measure of how far normals spread.
+  [[nodiscard]] double cost() const {
+    if (count == 0) return 0.0;
+    const Vec3d side = Vec3d(box.hi) - Vec3d(box.lo);
+    const double spread = 1.0 - std::min(1.0, length(normals) / power);
+    return power * dot(side, side) * (1.0 + kCostOfSpread * spread);
+  }
+};
+
+/// A cone about an axis that has no direction.
+struct Cone {
+  Vec3d axis{0.0};
+  double spread = 0.0;  ///< half angle, 0 to pi/2
+};
+
+constexpr double kHalfPi = 1.57079632679489661923;
+
+/// The narrowest cone that holds both, or one a little wider.
+Cone united(const Cone& a, const Cone& b) {
+  if (a.spread < b.spread) return united(b, a);
+  const Vec3d towards = dot(a.axis, b.axis) < 0.0 ? -b.axis : b.axis;
+  const Vec3d turn = cross(a.axis, towards);
+  const double between = std::atan2(length(turn), dot(a.axis, towards));
+  if (between + b.spread <= a.spread) return a;
+  const double spread = 0.5 * (a.spread + between + b.spread);
+  if (!(spread < kHalfPi)) return {a.axis, kHalfPi};
+  const double angle = spread - a.spread;
+  const Vec3d aside = towards - dot(towards, a.axis) * a.axis;
+  const double sine = length(aside);
+  if (!(sine > 0.0)) return {a.axis, spread};
+  return {normalize(std::cos(angle) * a.axis + std::sin(angle) / sine * aside), spread};
+}
+
+class Builder {
+ public:
+  explicit Builder(std::span<const EmitterBounds> emitters) : emitters_(emitters), order_(emitters.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    built_.ways.resize(emitters.size());
+    built_.nodes.reserve(2 * emitters.size() - 1);
+    built_.nodes.emplace_back();
+    grow(0, 0, order_.size(), {.turns = 0, .depth = 0});
+  }
+  Built take() { return std::move(built_); }
+
+ private:
+  struct Way {
+    std::uint64_t turns;
+    int depth;
+    [[nodiscard]] Way turn(std::uint64_t side) const { return {turns | side << depth, depth + 1}; }
+  };
+
+  /// Makes node `at` of order_[begin, end).
+  Cone grow(std::size_t at, std::size_t begin, std::size_t end, const Way& way) {
+    if (end - begin == 1) return leaf(at, order_[begin], way);
+    const std::size_t split =
+        way.depth < kDeepestSplitByCost ? by_cost(begin, end) : begin + (end - begin) / 2;
+    const std::size_t children = built_.nodes.size();
+    built_.nodes.resize(children + 2);
+    const Cone a = grow(children, begin, split, way.turn(0));
+    const Cone b = grow(children + 1, split, end, way.turn(1));
+    Node& node = built_.nodes[at];
+    const Node& first = built_.nodes[children];
+    const Node& second = built_.nodes[children + 1];
+    node.lo = min(first.lo, second.lo);
+    node.hi = max(first.hi, second.hi);
+    node.power = first.power + second.power;
+    node.link = static_cast<std::uint32_t>(children);
+    return finish(node, united(a, b));
+  }
+
+  Cone leaf(std::size_t at, std::uint32_t emitter, const Way& way) {
+    const EmitterBounds& e = emitters_[emitter];
+    built_.ways[emitter] = way.turns | std::uint64_t{1} << way.depth;
+    Node& node = built_.nodes[at];
+    node.lo = e.lo;
+    node.hi = e.hi;
+    node.power = e.power;
+    node.link = emitter | LightTree::kLeaf;
+    return finish(node, {Vec3d(e.axis), 0.0});
+  }
+
+  static Cone finish(Node& node, const Cone& cone) {
+    node.axis = Vec3f(cone.axis);
+    node.cos_spread = static_cast<float>(std::cos(cone.spread));
+    node.sin_spread = static_cast<float>(std::sin(cone.spread));
+    node.radius = static_cast<float>(0.5 * length(Vec3d(node.hi) - Vec3d(node.lo)));
+    return cone;
+  }
+
+  struct Split {
+    int axis = -1, bin = 0;  ///< bins up to this one go first
+    double cost = 0.0;
+  };
+
+  /// Parts order_[begin, end) where the two sides cost least; in halves where all middles coincide.
+  std::size_t by_cost(std::size_t begin, std::size_t end) {
+    Vec3d lo = middle(emitters_[order_[begin]]), hi = lo;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3d m = middle(emitters_[order_[i]]);
+      lo = min(lo, m);
+      hi = max(hi, m);
+    }
+    const Vec3d reference(emitters_[order_[begin]].axis);
+    const double widest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double width = hi[axis] - lo[axis];
+      if (!(width > 0.0)) continue;
+      consider(axis, lo[axis], width, widest / width, {begin, end}, reference, best);
+    }
+    if (best.axis < 0) return begin + (end - begin) / 2;
+    const double from = lo[best.axis], width = hi[best.axis] - from;
+    const auto border = std::partition(at(begin), at(end), [&](std::uint32_t e) {
+      return bin_of(middle(emitters_[e])[best.axis], from, width) <= best.bin;
+    });
+    return static_cast<std::size_t>(border - order_.begin());
+  }
+
+  /// All borders between bins along an axis; `stretch` punishes cuts across short sides.
+  void consider(int axis, double from, double width, double stretch,
+                const std::pair<std::size_t, std::size_t>& range, const Vec3d& reference,
+                Split& best) const {
+    std::array<Cluster, kBins> bins{};
+    for (std::size_t i = range.first; i < range.second; ++i) {
+      const EmitterBounds& e = emitters_[order_[i]];
+      bins[static_cast<std::size_t>(bin_of(middle(e)[axis], from, width))].add(e, reference);
+    }
+    std::array<double, kBins> above{};
+    Cluster sum;
+    for (std::size_t b = kBins - 1; b > 0; --b) {
+      sum.add(bins[b]);
+      above[b] = sum.cost();
+    }
+    sum = {};
+    for (std::size_t b = 0; b + 1 < kBins; ++b) {
+      sum.add(bins[b]);
+      // The first and the last bin hold something, so neither side is ever empty.
+      const double cost = stretch * (sum.cost() + above[b + 1]);
+      if (best.axis < 0 || cost < best.cost) best = {axis, static_cast<int>(b), cost};
+    }
+  }
+
+  static int bin_of(double middle, double from, double width) {
+    return std::min(static_cast<int>((middle - from) / width * kBins), kBins - 1);
+  }
+  [[nodiscard]] std::vector<std::uint32_t>::iterator at(std::size_t i) {
+    return order_.begin() + static_cast<std::ptrdiff_t>(i);
+  }
+
+  std::span<const EmitterBounds> emitters_;
+  std::vector<std::uint32_t> order_;
+  Built built_;
+};
+
+}  // namespace
+
+Built build(std::span<const EmitterBounds> emitters) { return Builder(emitters).take(); }
+
+}  // namespace raykiln::render::light_tree
