@@ -29,6 +29,8 @@ export interface JobRequest {
   pixel_mode?: string;
   direction_sampling?: string;
   emitter_sampling?: boolean;
+  emitter_choice?: string;
+  filter?: string;
   sampler?: string;
   adaptive?: boolean;
   effects?: EffectChoice;

@@ -8,7 +8,7 @@ export type FormKey =
   | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
   | "width" | "height" | "samples" | "error" | "seconds" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
-  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | "sampler" | "adaptive"
+  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | "emitter_choice" | "filter" | "sampler" | "adaptive"
   | "effects" | "without" | OverrideKey;
 
 /** Switches against the named light model; empty: as the model has it. */
@@ -30,7 +30,7 @@ export const kDefaultForm: FormValues = {
   scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40",
   width: "640", height: "480", samples: "64", error: "", seconds: "", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
-  light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true", sampler: "random", adaptive: "false",
+  light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true", emitter_choice: "auto", filter: "box", sampler: "random", adaptive: "false",
   effects: "auto", without: "",
   phong: "", fresnel: "", radiance_scaling: "", diffuse_sampling: "", roulette: "",
 };
@@ -81,6 +81,10 @@ export const kFields: readonly FieldSpec[] = [
     choices: [["bsdf", "By the material"], ["uniform_sphere", "Uniform (reference)"]] },
   { key: "emitter_sampling", pointer: "/emitter_sampling", label: "Emitter sampling", hint: "", kind: "choice", group: "more",
     choices: [["true", "On"], ["false", "Off"]] },
+  { key: "emitter_choice", pointer: "/emitter_choice", label: "Emitters chosen", hint: "", kind: "choice", group: "more",
+    choices: [["auto", "By their number"], ["power", "By power"], ["tree", "From a tree"]] },
+  { key: "filter", pointer: "/filter", label: "Pixel filter", hint: "", kind: "choice", group: "more",
+    choices: [["box", "Box"], ["blackman_harris", "Blackman-Harris (softer)"]] },
   { key: "sampler", pointer: "/sampler", label: "Sampler", hint: "", kind: "choice", group: "more",
     choices: [["random", "Random numbers"], ["sobol", "Sobol points (less noise)"]] },
   { key: "adaptive", pointer: "/adaptive", label: "Samples go", hint: "", kind: "choice", group: "more",
@@ -172,6 +176,8 @@ export function to_request(values: FormValues): JobRequest {
     pixel_mode: values.pixel_mode,
     direction_sampling: values.direction_sampling,
     emitter_sampling: values.emitter_sampling === "true",
+    emitter_choice: values.emitter_choice,
+    filter: values.filter,
     sampler: values.sampler,
     ...(values.adaptive === "true" ? { adaptive: true } : {}),
     effects: values.effects === kWithout ? { without: names(values.without) } : values.effects,
@@ -215,7 +221,7 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   const values = { ...kDefaultForm, scene: request.scene, name: request.name ?? job.name };
   const plain: FormKey[] = [
     "width", "height", "max_depth", "branches", "seed", "tile", "priority",
-    "light_model", "pixel_mode", "direction_sampling", "emitter_sampling", "sampler", "adaptive",
+    "light_model", "pixel_mode", "direction_sampling", "emitter_sampling", "emitter_choice", "filter", "sampler", "adaptive",
   ];
   const bag = request as unknown as Record<string, unknown>;
   for (const key of plain) if (bag[key] !== undefined) values[key] = String(bag[key]);

@@ -8,7 +8,7 @@ namespace raykiln::render {
 namespace {
 
 template <class Number>
-std::string shortest(Number value) {
+std::string digits_of(Number value) {
   std::array<char, 40> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
@@ -26,6 +26,8 @@ std::string quoted(const Material& material) {
 }
 
 }  // namespace
+
+std::string shortest(double value) { return digits_of(value); }
 
 std::string named(const Material& material) {
   const std::string text = quoted(material);
@@ -61,7 +63,7 @@ Judgement of_lights(const EffectView& view, std::uint64_t count, const std::stri
 }
 
 std::string says(const Material& material, const char* field, double value) {
-  return quoted(material) + field + ' ' + shortest(value);
+  return quoted(material) + field + ' ' + digits_of(value);
 }
 
 std::string says(const Material& material, const char* field, const Rgb& value) {
@@ -69,7 +71,7 @@ std::string says(const Material& material, const char* field, const Rgb& value) 
 }
 
 std::string text(const Rgb& value) {
-  return shortest(value.x) + ' ' + shortest(value.y) + ' ' + shortest(value.z);
+  return digits_of(value.x) + ' ' + digits_of(value.y) + ' ' + digits_of(value.z);
 }
 
 Judgement of_surface(const EffectView& view, const Material* material, const std::string& evidence,

@@ -64,4 +64,7 @@ const Material* find_material(const EffectView& view, Predicate&& holds) {
 [[nodiscard]] Judgement of_surface(const EffectView& view, const Material* material,
                                    const std::string& evidence, const char* otherwise);
 
+/// The fewest digits that read back as this number.
+[[nodiscard]] std::string shortest(double value);
+
 }  // namespace raykiln::render

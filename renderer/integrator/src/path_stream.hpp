@@ -6,6 +6,7 @@
 
 #include "raykiln/math/ray.hpp"
 #include "raykiln/sampling/random.hpp"
+#include "raykiln/shading/light_tree.hpp"
 
 namespace raykiln::render {
 
@@ -25,15 +26,23 @@ struct PathState {
 struct PathStream {
   std::vector<Ray> rays;
   std::vector<PathState> states;
+  /// Where each path comes from, as its emitter was drawn for there; empty where emitters are not
+  /// drawn from a tree.
+  std::vector<EmitterReceiver> origins;
 
   [[nodiscard]] std::size_t size() const { return rays.size(); }
   void push(const Ray& ray, const PathState& state) {
     rays.push_back(ray);
     states.push_back(state);
   }
+  void push(const Ray& ray, const PathState& state, const EmitterReceiver& origin) {
+    push(ray, state);
+    origins.push_back(origin);
+  }
   void clear() {
     rays.clear();
     states.clear();
+    origins.clear();
   }
 };
 

@@ -95,13 +95,14 @@ void PathTracer::admit(Call& call) {
       static_cast<double>(kMostBranchRays) / widest, 1.0, static_cast<double>(kStreamPaths)));
   for (; call.started < call.starts.size() && front.size() < room; ++call.started) {
     const PathStart& start = call.starts[call.started];
-    const std::uint64_t pixel =
-        (static_cast<std::uint64_t>(start.y) << 32) | static_cast<std::uint32_t>(start.x);
+    const int x = start.x + settings.window_x, y = start.y + settings.window_y;
+    const std::uint64_t pixel = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint32_t>(x);
     PathState state;
     state.key = path_key(settings.sampler, settings.seed, pixel, start.sample);
     state.slot = static_cast<std::uint32_t>(call.started);
-    front.push(camera_.ray(start.x, start.y, settings.pixel_mode, vertex_key(state.key, 0, 0)),
+    front.push(camera_.ray(x, y, settings.pixel_mode, vertex_key(state.key, 0, 0), settings.pixel_filter),
                state);
+    if (scratch_->transport.emitters_by_tree) front.origins.emplace_back();
   }
 }
 

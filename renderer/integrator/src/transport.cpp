@@ -17,7 +17,7 @@ constexpr EffectSet kFolded{
     Effect::kPointLights,     Effect::kSpotLights,  Effect::kDirectionalLights,
     Effect::kEmitterSampling, Effect::kBackground,  Effect::kEnvironment,
     Effect::kFresnel,         Effect::kShadingNormals, Effect::kRoulette,
-    Effect::kTextures};
+    Effect::kTextures,        Effect::kDepthOfField};
 
 PathSettings folded(PathSettings s, const Emitters& emitters) {
   const EffectSet simulated = s.simulated;
@@ -55,6 +55,8 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
   if (!simulated.contains(Effect::kTextures)) t.textures = nullptr;
   t.environment_sampling = t.environment != nullptr && settings.emitter_sampling &&
                            simulated.contains(Effect::kEmitterSampling);
+  t.emitters_by_tree =
+      t.settings.emitter_sampling && scene.emitters.by_tree(settings.emitter_choice);
   t.has_light = simulated.contains_any(kSources) &&
                 (t.has_lights_without_surface() || t.background != Rgb(0.0F) ||
                  t.environment != nullptr || scene.emitters.has_triangles());

@@ -20,6 +20,7 @@ struct Transport {
   Rgb background{0.0F};
   const EnvironmentLight* environment = nullptr;
   bool environment_sampling = false;  ///< shadow rays are sent to it, too
+  bool emitters_by_tree = false;      ///< where they are sampled
   const SurfaceTextures* textures = nullptr;
   bool normals = true;    ///< shading normals are interpolated
   bool has_light = true;  ///< any at all; without, nothing is lost where a path is cut off

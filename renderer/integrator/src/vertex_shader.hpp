@@ -80,8 +80,10 @@ class VertexShader {
   using Lobes = LobesOf<kSwitches>;
   using Vertex = render::Vertex<Lobes>;
 
-  VertexShader(const Transport& transport, const PathState& state, ShadingSinks& sinks)
-      : scene_(transport), settings_(transport.settings), state_(state), sinks_(sinks) {}
+  /// `origin`: where the path comes from, if emitters are drawn from a tree; else null.
+  VertexShader(const Transport& transport, const PathState& state, const EmitterReceiver* origin,
+               ShadingSinks& sinks)
+      : scene_(transport), settings_(transport.settings), state_(state), origin_(origin), sinks_(sinks) {}
 
   // L_o = L_e + sum over lights of f L cos + the scattered rays. A shadow ray to an emitter
   // or the environment stands for one more reflection, so it is sent only where such a ray may be;
@@ -105,7 +107,7 @@ class VertexShader {
       if (!zero(material.facets.absorption) && dot(point.ng, Vec3d(ray.d)) > 0.0) {
         PathState dimmed = state_;
         dimmed.throughput *= let_through(material, ray, hit.t);
-        return VertexShader(scene_, dimmed, sinks_).shade_surface(ray, hit, point, material);
+        return VertexShader(scene_, dimmed, origin_, sinks_).shade_surface(ray, hit, point, material);
       }
     }
     shade_surface(ray, hit, point, material);
@@ -114,7 +116,7 @@ class VertexShader {
  private:
   void shade_surface(const Ray& ray, const Hit& hit, const SurfacePoint& point,
                      const Material& material) {
-    add_emission(point, material.emission, ray, hit.t);
+    add_emission(point, material.emission, ray, hit);
     if (!returns_light(material)) return;
     if (kSwitches.reduced && state_.bounce > 0 && leaves_out(Effect::kIndirectLight)) return;
     const bool last = !kSwitches.bounces || state_.bounce >= settings_.max_depth;
@@ -188,15 +190,17 @@ class VertexShader {
   }
 
   /// Emission seen by the path itself, weighted against its being found by a shadow ray.
-  void add_emission(const SurfacePoint& point, const Rgb& radiance, const Ray& ray, float t) {
+  void add_emission(const SurfacePoint& point, const Rgb& radiance, const Ray& ray, const Hit& hit) {
     if (zero(radiance)) return;
     if (kSwitches.reduced && leaves_out(Effect::kAreaEmitters)) return;
     double weight = 1.0;
     if (state_.bounce > 0 && settings_.emitter_sampling) {
       const Vec3d d(ray.d);
-      const double distance2 = static_cast<double>(t) * static_cast<double>(t) * dot(d, d);
-      const double other = solid_angle_pdf(scene_.emitters.pdf_area(point.material), distance2,
-                                           std::abs(dot(point.ng, d)));
+      const auto t = static_cast<double>(hit.t);
+      const double pdf_area = origin_ == nullptr
+                                  ? scene_.emitters.pdf_area(point.material)
+                                  : scene_.emitters.pdf_area(scene_.scene, hit.id, *origin_);
+      const double other = solid_angle_pdf(pdf_area, t * t * dot(d, d), std::abs(dot(point.ng, d)));
       weight = power_heuristic(state_.pdf, other);
     }
     sinks_.results[state_.slot].emitted += state_.throughput * Rgbd(radiance) * weight;
@@ -249,7 +253,11 @@ class VertexShader {
 
   /// One point on an emitting triangle, weighted against the path's own rays finding it.
   void light_from_emitters(const Vertex& vertex) {
-    const EmitterSample sample = scene_.emitters.sample(scene_.scene, vertex.key);
+    const EmitterSample sample =
+        scene_.emitters_by_tree
+            ? scene_.emitters.sample(scene_.scene, vertex.key, receiver(vertex))
+            : scene_.emitters.sample(scene_.scene, vertex.key);
+    if (!(sample.pdf_area > 0.0)) return;
     const Vec3d way = sample.point.p - vertex.point.p;
     const double distance2 = dot(way, way);
     const Vec3d wi = way / std::sqrt(distance2);
@@ -267,6 +275,11 @@ class VertexShader {
     const Vec3f from = ray_origin(vertex.point, wi);
     queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface},
           state_.throughput * value.f_cos * radiance * weight);
+  }
+
+  /// Rounded to float before anything is drawn for it: what asks for the density later has the same.
+  static EmitterReceiver receiver(const Vertex& vertex) {
+    return {Vec3f(vertex.point.p), Vec3f(vertex.bsdf.ng), vertex.transmits};
   }
 
   /// One direction to the environment, weighted against the path's own rays finding it.
@@ -308,7 +321,11 @@ class VertexShader {
       Ray ray;
       ray.o = ray_origin(vertex.point, Vec3d(sample.wi));
       ray.d = sample.wi;
-      sinks_.next.push(ray, child);
+      if (scene_.emitters_by_tree) {
+        sinks_.next.push(ray, child, receiver(vertex));
+      } else {
+        sinks_.next.push(ray, child);
+      }
     }
   }
 
@@ -351,6 +368,7 @@ class VertexShader {
   const Transport& scene_;
   const PathSettings& settings_;
   const PathState& state_;
+  const EmitterReceiver* origin_;
   ShadingSinks& sinks_;
 };
 
@@ -359,7 +377,8 @@ void shade_range(const Transport& transport, const ShadingRange& range, ShadingS
   const PathStream& front = range.front;
   for (std::size_t i = range.begin; i < range.end && !sinks.stopped; ++i) {
     (front.states[i].bounce == 0 ? sinks.stats.camera_rays : sinks.stats.bounce_rays) += 1;
-    VertexShader<kSwitches>(transport, front.states[i], sinks)
+    const EmitterReceiver* origin = transport.emitters_by_tree ? &front.origins[i] : nullptr;
+    VertexShader<kSwitches>(transport, front.states[i], origin, sinks)
         .shade(front.rays[i], range.hits[i - range.begin]);
   }
 }

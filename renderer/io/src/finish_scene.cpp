@@ -343,6 +343,10 @@ class Finisher {
       auto made = make_camera(std::move(camera.name), eye, camera.forward, camera.up,
                               camera.fov_y_rad, scene_.origin);
       if (!made || !in_range(eye - scene_.origin)) return out_of_range("a camera");
+      if (camera.view_height > 0.0) made->projection = Projection::kOrthographic;
+      if (camera.view_height > 0.0) made->view_height = camera.view_height * draft_.metres_per_unit;
+      made->lens = {.radius = camera.lens_radius * draft_.metres_per_unit,
+                    .focus_distance = camera.focus_distance * draft_.metres_per_unit};
       scene_.cameras.push_back(std::move(*made));
     }
     if (scene_.cameras.empty()) scene_.cameras.push_back(default_camera());

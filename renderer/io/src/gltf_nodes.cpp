@@ -10,6 +10,8 @@
 namespace raykiln::render::io {
 namespace {
 
+constexpr double kLargestView = 1e15;  ///< half the height that an orthographic camera sees
+
 // Column j of a rotation by the quaternion (x, y, z, w), brought to unit length.
 Mat4d rotation(const std::vector<double>& q) {
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -152,7 +154,8 @@ bool GltfNodes::contents(const JsonAt& node, const Mat4d& to_world) {
   return !node.diagnostics().failed();
 }
 
-// A glTF camera looks along -z of its node with +y up.
+// A glTF camera looks along -z of its node with +y up. The picture's shape is the job's, so of an
+// orthographic camera ymag alone counts; a negative one, which the specification discourages, as its size.
 bool GltfNodes::camera(const JsonAt& node, std::uint64_t index, const Mat4d& to_world) {
   const auto cameras = root_.array("cameras");
   if (!cameras || index >= cameras->size()) {
@@ -165,23 +168,27 @@ bool GltfNodes::camera(const JsonAt& node, std::uint64_t index, const Mat4d& to_
     return at.fail(ImportErrorCode::kLimitExceeded, "too many cameras");
   }
   const auto perspective = at.object("perspective");
-  if (!perspective) {
-    at.warn(ImportWarningCode::kUnsupportedCamera, "only perspective cameras are supported");
+  const auto orthographic = at.object("orthographic");
+  if (!perspective && !orthographic) {
+    at.warn(ImportWarningCode::kUnsupportedCamera, "a camera that is neither perspective nor orthographic is ignored");
     return !at.diagnostics().failed();
   }
-  if (!perspective->has("yfov")) {
-    return perspective->fail(ImportErrorCode::kMissingField, "the field 'yfov' is missing");
+  const JsonAt& lens = perspective ? *perspective : *orthographic;
+  if (const char* field = perspective ? "yfov" : "ymag"; !lens.has(field)) {
+    return lens.fail(ImportErrorCode::kMissingField, std::string("the field '") + field + "' is missing");
   }
   DraftCamera made;
   made.name = clean_text(at.text_or("name", node.text_or("name", "")));
   if (made.name.empty()) made.name = "camera " + std::to_string(draft_->cameras.size() + 1);
-  made.fov_y_rad = perspective->number_in("yfov", 0.7, 1e-6, 3.1398);
+  if (perspective) made.fov_y_rad = lens.number_in("yfov", 0.7, 1e-6, 3.1398);
+  if (!perspective) made.view_height = 2.0 * std::abs(lens.number_in("ymag", 1.0, -kLargestView, kLargestView));
   made.eye = Vec3d(to_world[3]);
   made.forward = -Vec3d(to_world[2]);
   made.up = Vec3d(to_world[1]);
   if (at.diagnostics().failed()) return false;
-  if (!make_camera("", made.eye, made.forward, made.up, made.fov_y_rad, Vec3d(0.0))) {
-    node.warn(ImportWarningCode::kUnsupportedCamera, "a camera with a flat transform is ignored");
+  const bool nothing_in_view = !perspective && !(made.view_height > 0.0);
+  if (nothing_in_view || !make_camera("", made.eye, made.forward, made.up, made.fov_y_rad, Vec3d(0.0))) {
+    node.warn(ImportWarningCode::kUnsupportedCamera, "a camera with a flat transform or view is ignored");
     return true;
   }
   draft_->cameras.push_back(std::move(made));

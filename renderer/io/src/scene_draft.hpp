@@ -40,6 +40,9 @@ struct DraftCamera {
   Vec3d forward{0.0, 0.0, -1.0};  ///< any length > 0
   Vec3d up{0.0, 1.0, 0.0};        ///< not parallel to forward
   double fov_y_rad = 0.7;
+  double view_height = 0.0;     ///< in the units of positions; above 0: orthographic
+  double lens_radius = 0.0;     ///< in the units of positions
+  double focus_distance = 1.0;  ///< in the units of positions
 };
 
 /// Materials are known by name: a face may use one before (or without) its definition.

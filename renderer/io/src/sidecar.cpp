@@ -16,15 +16,29 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kLargestWeight = 1e6;
 constexpr double kSmallestAngleDeg = 1e-4;
 constexpr double kLargestAngleDeg = 179.9;
+constexpr double kSmallestLength = 1e-15, kLargestLength = 1e15;
 
 bool read_camera(const JsonAt& at, std::vector<DraftCamera>& cameras) {
-  if (!at.expect_object() || !at.only({"name", "eye", "look_at", "up", "fov_deg"})) return false;
+  if (!at.expect_object() || !at.only({"name", "eye", "look_at", "up", "fov_deg", "view_height",
+                                       "lens_radius", "focus_distance"})) {
+    return false;
+  }
+  if (at.has("fov_deg") && at.has("view_height")) {
+    return at.fail(ImportErrorCode::kInvalidValue, "fov_deg and view_height exclude each other",
+                   "view_height makes an orthographic camera, which has no angle");
+  }
   DraftCamera camera;
   camera.name = clean_text(at.text_or("name", "camera " + std::to_string(cameras.size() + 1)));
   camera.eye = required_point(at, "eye");
   camera.forward = required_point(at, "look_at") - camera.eye;
   camera.up = at.vec3_or("up", Vec3d(0.0, 1.0, 0.0));
   camera.fov_y_rad = at.number_in("fov_deg", 40.0, kSmallestAngleDeg, kLargestAngleDeg) * kDegree;
+  if (at.has("view_height")) camera.view_height = at.number_in("view_height", 1.0, kSmallestLength, kLargestLength);
+  camera.lens_radius = at.number_in("lens_radius", 0.0, 0.0, kLargestLength);
+  camera.focus_distance = length(camera.forward);
+  if (at.has("focus_distance")) {
+    camera.focus_distance = at.number_in("focus_distance", 1.0, kSmallestLength, kLargestLength);
+  }
   if (at.diagnostics().failed()) return false;
   if (!make_camera("", camera.eye, camera.forward, camera.up, camera.fov_y_rad, Vec3d(0.0))) {
     return at.fail(ImportErrorCode::kInvalidValue,

@@ -25,7 +25,9 @@ bool gives_no_benefit(const BuildStats& tree) {
   return (n >= kFewTriangles && ratio >= 0.9) || (n >= kManyTriangles && ratio >= 0.5);
 }
 
+/// 0 where all rays are parallel.
 double pixel_solid_angle(const Camera& camera, int height_px) {
+  if (camera.projection == Projection::kOrthographic) return 0.0;
   const double side = 2.0 * std::tan(0.5 * camera.fov_y_rad) / height_px;
   return side * side;
 }
@@ -45,10 +47,8 @@ double lobe_solid_angle(const Material& m) {
 std::size_t unresolved_mirrors(const RenderSettings& settings, const Scene& scene) {
   const SceneUse use = use_of(scene);
   if (use.lights_without_surface() == 0) return 0;
-  const Camera& camera = settings.own_camera
-                             ? *settings.own_camera
-                             : scene.cameras[static_cast<std::size_t>(settings.camera)];
-  const double least = kLeastShare * pixel_solid_angle(camera, settings.height);
+  const int height = settings.crop ? settings.crop->full_height : settings.height;
+  const double least = kLeastShare * pixel_solid_angle(camera_of(settings, scene), height);
   return static_cast<std::size_t>(
       std::count_if(use.materials.begin(), use.materials.end(), [&](std::uint32_t id) {
         const Material& m = scene.materials[id];

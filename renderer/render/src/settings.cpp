@@ -12,7 +12,23 @@ std::string between(const char* name, long long low, long long high) {
          std::to_string(high);
 }
 
+std::optional<std::string> crop_error(const RenderSettings& s) {
+  if (!s.crop) return std::nullopt;
+  const Crop& crop = *s.crop;
+  if (crop.full_width < 1 || crop.full_width > kLargestSide) return between("full_width", 1, kLargestSide);
+  if (crop.full_height < 1 || crop.full_height > kLargestSide) return between("full_height", 1, kLargestSide);
+  const bool inside = crop.x >= 0 && crop.y >= 0 && s.width <= crop.full_width - crop.x &&
+                      s.height <= crop.full_height - crop.y;
+  if (inside) return std::nullopt;
+  return "the crop window leaves the whole picture";
+}
+
 }  // namespace
+
+const Camera& camera_of(const RenderSettings& settings, const Scene& scene) {
+  if (settings.own_camera) return *settings.own_camera;
+  return scene.cameras[static_cast<std::size_t>(settings.camera)];
+}
 
 int path_limit(const RenderSettings& settings) {
   if (settings.max_depth) return *settings.max_depth;
@@ -46,6 +62,7 @@ std::optional<std::string> settings_error(const RenderSettings& settings, const 
     return "camera " + std::to_string(settings.camera) + " does not exist: the scene has " +
            std::to_string(cameras);
   }
+  if (const auto wrong = crop_error(settings)) return wrong;
   const int depth = path_limit(settings);
   if (depth < 0 || depth > kLargestDepth) {
     return between("max_depth", 0, kLargestDepth);

@@ -40,6 +40,15 @@ Vec3f sample_uniform_sphere(double u, double v) {
   return Vec3f(Vec3d(sine * std::cos(phi), sine * std::sin(phi), z));
 }
 
+DiskPoint sample_uniform_disk(double u, double v) {
+  const double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
+  if (a == 0.0 && b == 0.0) return {};
+  const bool wide = std::abs(a) > std::abs(b);
+  const double radius = wide ? a : b;
+  const double angle = wide ? 0.25 * kPi * (b / a) : 0.5 * kPi - 0.25 * kPi * (a / b);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
 TrianglePoint sample_uniform_triangle(double u, double v) {
   const double root = std::sqrt(u);
   return {.b1 = root * (1.0 - v), .b2 = root * v};

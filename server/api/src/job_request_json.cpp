@@ -35,6 +35,13 @@ std::array<double, 3> as_array(const std::vector<double>& list) {
   return {list.at(0), list.at(1), list.at(2)};
 }
 
+std::optional<double> positive(FieldReader& reader, const char* name, double most) {
+  const auto value = reader.number(name);
+  if (!value || (*value > 0.0 && *value <= most)) return value;
+  reader.error(name, "out_of_range", "must be above 0 and at most " + std::to_string(static_cast<long long>(most)));
+  return std::nullopt;
+}
+
 OwnCamera read_own_camera(const json& object, std::string pointer, Errors& errors) {
   OwnCamera camera;
   FieldReader reader(object, std::move(pointer), errors);
@@ -46,6 +53,10 @@ OwnCamera read_own_camera(const json& object, std::string pointer, Errors& error
     if (!(*fov > 0.0 && *fov < 180.0)) {
       reader.error("fov_deg", "out_of_range", "must lie between 0 and 180, both left out");
     }
+  }
+  camera.view_height = positive(reader, "view_height", 1e15);
+  if (camera.view_height && object.contains("fov_deg")) {
+    reader.error("view_height", "invalid_value", "excludes fov_deg: an orthographic camera has no angle");
   }
   reader.finish();
   return camera;
@@ -65,13 +76,6 @@ void read_camera(FieldReader& reader, Errors& errors, JobRequest& request) {
   } else {
     reader.error("camera", "wrong_type", "must be an index, a name or an object with eye and look_at");
   }
-}
-
-std::optional<double> positive(FieldReader& reader, const char* name, double most) {
-  const auto value = reader.number(name);
-  if (!value || (*value > 0.0 && *value <= most)) return value;
-  reader.error(name, "out_of_range", "must be above 0 and at most " + std::to_string(static_cast<long long>(most)));
-  return std::nullopt;
 }
 
 /// Whether there is one for each tile is validate()'s to say.
@@ -149,6 +153,47 @@ nlohmann::ordered_json overrides_value(const LightModelOverrides& o) {
   return value;
 }
 
+void read_lens(FieldReader& reader, Errors& errors, JobRequest& request) {
+  const json* value = reader.any("lens");
+  if (value == nullptr) return;
+  if (!value->is_object()) {
+    return reader.error("lens", "wrong_type", "must be an object such as {\"radius\": 0.05, \"focus_distance\": 2}");
+  }
+  FieldReader fields(*value, reader.pointer_to("lens"), errors);
+  Lens lens;
+  lens.radius = fields.number("radius").value_or(0.0);
+  if (!value->contains("radius")) fields.error("radius", "missing_field", "is needed: metres, 0 for a pinhole");
+  if (!(lens.radius >= 0.0 && lens.radius <= 1e15)) {
+    fields.error("radius", "out_of_range", "must be a length in metres, 0 or more");
+  }
+  const auto focus = positive(fields, "focus_distance", 1e15);
+  if (focus) lens.focus_distance = *focus;
+  else if (lens.radius > 0.0 && !value->contains("focus_distance")) {
+    fields.error("focus_distance", "missing_field", "is needed where the radius is above 0");
+  }
+  fields.finish();
+  request.lens = lens;
+}
+
+/// Whether the window lies within the whole picture is validate()'s to say.
+void read_crop(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
+  const json* value = reader.any("crop");
+  if (value == nullptr) return;
+  if (!value->is_object()) {
+    return reader.error("crop", "wrong_type",
+                        "must be an object such as {\"x\": 0, \"y\": 0, \"full_width\": 1920, \"full_height\": 1080}");
+  }
+  FieldReader fields(*value, reader.pointer_to("crop"), errors);
+  const FieldReader::Bounds place{0, as_bound(limits.max_side)}, side{1, as_bound(limits.max_side)};
+  Crop crop;
+  read_integer(fields, "x", place, Need::kRequired, crop.x);
+  read_integer(fields, "y", place, Need::kRequired, crop.y);
+  read_integer(fields, "full_width", side, Need::kRequired, crop.full_width);
+  read_integer(fields, "full_height", side, Need::kRequired, crop.full_height);
+  fields.finish();
+  request.crop = crop;
+}
+
 /// All fields of a picture but when it is done.
 void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
   if (const auto scene = reader.text("scene", {0, 100}, Need::kRequired)) {
@@ -159,6 +204,8 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
   }
   if (const auto name = reader.text("name", {0, limits.max_name_bytes})) request.name = *name;
   read_camera(reader, errors, request);
+  read_lens(reader, errors, request);
+  read_crop(reader, limits, errors, request);
   const FieldReader::Bounds side{1, as_bound(limits.max_side)};
   read_integer(reader, "width", side, Need::kRequired, request.width);
   read_integer(reader, "height", side, Need::kRequired, request.height);
@@ -170,9 +217,11 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
   read_integer(reader, "branches", {1, as_bound(limits.max_branches)}, Need::kOptional, request.branches);
   if (const auto seed = reader.natural("seed", {0, 9007199254740991U})) request.seed = *seed;
   read_named(reader, "pixel_mode", "random, centre", pixel_mode_named, request.pixel_mode);
+  read_named(reader, "filter", "box, blackman_harris", filter_named, request.filter);
   read_named(reader, "direction_sampling", "bsdf, uniform_sphere", direction_sampling_named,
              request.direction_sampling);
   if (const auto on = reader.boolean("emitter_sampling")) request.emitter_sampling = *on;
+  read_named(reader, "emitter_choice", "auto, power, tree", emitter_choice_named, request.emitter_choice);
   read_named(reader, "sampler", "random, sobol", sampler_named, request.sampler);
   read_effects(reader, errors, request);
   read_integer(reader, "tile", {1, as_bound(limits.max_tile)}, Need::kOptional, request.tile);
@@ -234,9 +283,12 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
   else if (const auto* by_name = std::get_if<std::string>(&request.camera)) camera = *by_name;
   else {
     const auto& own = std::get<OwnCamera>(request.camera);
-    camera = {{"eye", own.eye}, {"look_at", own.look_at}, {"up", own.up}, {"fov_deg", own.fov_deg}};
+    camera = {{"eye", own.eye}, {"look_at", own.look_at}, {"up", own.up}};
+    if (own.view_height) camera["view_height"] = *own.view_height;
+    else camera["fov_deg"] = own.fov_deg;
   }
-  return {{"scene", request.scene},
+  nlohmann::ordered_json value{
+          {"scene", request.scene},
           {"name", request.name},
           {"camera", std::move(camera)},
           {"width", request.width},
@@ -249,13 +301,22 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"seed", request.seed},
           {"pixel_mode", name(request.pixel_mode)},
           {"direction_sampling", name(request.direction_sampling)},
+          {"filter", name(request.filter)},
           {"emitter_sampling", request.emitter_sampling},
+          {"emitter_choice", name(request.emitter_choice)},
           {"sampler", name(request.sampler)},
           {"effects", effects_value(request.effects)},
           {"tile", request.tile},
           {"priority", request.priority},
           {"adaptive", request.adaptive},
           {"reuse", request.reuse}};
+  if (const auto& lens = request.lens) {
+    value["lens"] = {{"radius", lens->radius}, {"focus_distance", lens->focus_distance}};
+  }
+  if (const auto& crop = request.crop) {
+    value["crop"] = {{"x", crop->x}, {"y", crop->y}, {"full_width", crop->full_width}, {"full_height", crop->full_height}};
+  }
+  return value;
 }
 
 std::string job_request_json(const JobRequest& request) {

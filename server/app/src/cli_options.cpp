@@ -111,6 +111,45 @@ void add_view(CLI::App& command, CliOptions& options, const char* size) {
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}))
       ->capture_default_str();
   command.add_option("--camera", options.picture.camera, "name or index of a camera of the scene");
+  command.add_option_function<std::vector<double>>(
+             "--lens",
+             [&request](const std::vector<double>& lens) {
+               if (!(lens[0] >= 0.0 && lens[1] > 0.0)) {
+                 throw CLI::ValidationError("--lens wants RADIUS,FOCUS_DISTANCE in metres, above 0");
+               }
+               request.lens = Lens{lens[0], lens[1]};
+             },
+             "RADIUS,FOCUS_DISTANCE of the camera in metres; 0,1 is a pinhole")
+      ->delimiter(',')->expected(2)->allow_extra_args(false);
+  command.add_option("--crop", options.picture.crop, "X,Y,W,H in pixels: this window of the picture alone")
+      ->delimiter(',')->expected(4)->allow_extra_args(false);
+}
+
+/// --size is the whole picture, whose window the job's picture becomes.
+bool apply_crop(CliOptions& options) {
+  const std::vector<int>& crop = options.picture.crop;
+  if (crop.empty()) return true;
+  JobRequest& request = options.picture.request;
+  request.crop = Crop{crop[0], crop[1], request.width, request.height};
+  const bool inside = crop[0] >= 0 && crop[1] >= 0 && crop[2] >= 1 && crop[3] >= 1 &&
+                      crop[2] <= request.width - crop[0] && crop[3] <= request.height - crop[1];
+  request.width = crop[2];
+  request.height = crop[3];
+  return inside;
+}
+
+/// An option that names one of a few values.
+template <class Value>
+void add_named(CLI::App& command, const char* option, std::optional<Value> (*parse)(std::string_view), Value& target,
+               const char* help) {
+  command.add_option_function<std::string>(
+      option,
+      [=, &target](const std::string& text) {
+        const auto value = parse(text);
+        if (!value) throw CLI::ValidationError(std::string(option) + ": " + help);
+        target = *value;
+      },
+      help);
 }
 
 constexpr const char* kSceneFiles = ".obj, .gltf, .glb, .zip or a folder";
@@ -131,14 +170,12 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
   add_light_model(command, request);
   add_effects(command, request);
   add_view(command, options, "WxH in pixels (640x480)");
-  command.add_option_function<std::string>(
-      "--sampler",
-      [&request](const std::string& text) {
-        const auto sampler = sampler_named(text);
-        if (!sampler) throw CLI::ValidationError("--sampler is random or sobol");
-        request.sampler = *sampler;
-      },
-      "random, or sobol: points that fill space, less noise (random)");
+  add_named(command, "--sampler", sampler_named, request.sampler,
+            "random, or sobol: points that fill space, less noise (random)");
+  add_named(command, "--emitter-choice", emitter_choice_named, request.emitter_choice,
+            "power, tree, or auto: a tree from 32 emitting triangles on (auto)");
+  add_named(command, "--filter", filter_named, request.filter,
+            "box, or blackman_harris: softer pixels (box)");
   command.add_option("--tile", request.tile, "edge of a tile in pixels; changes no pixel")
       ->check(CLI::Range(1, limits.max_tile))
       ->capture_default_str();
@@ -341,6 +378,10 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
     options.picture.request.height = 120;
   }
   options.picture.request.camera = camera_choice(options.picture.camera);
+  if (!apply_crop(options)) {
+    std::cerr << "raykiln: --crop leaves the picture of --size\n";
+    parsed.exit_code = to_int(ExitCode::kUsage);
+  }
   for (const auto& output : options.outputs) {
     if (output.extension() == ".exr" || output.extension() == ".png") continue;
     std::cerr << "raykiln: " << output << ": a picture file ends in .exr or .png\n";

@@ -28,6 +28,7 @@ void write_camera(RecordWriter& record, const CameraChoice& choice) {
     for (const double c : own.look_at) record.real("camera.look_at", c);
     for (const double c : own.up) record.real("camera.up", c);
     record.real("camera.fov_deg", own.fov_deg);
+    if (own.view_height) record.real("camera.view_height", *own.view_height);
   }
 }
 
@@ -48,7 +49,29 @@ CameraChoice read_camera(const RecordReader& record) {
   own.look_at = read_point(record, "camera.look_at");
   own.up = read_point(record, "camera.up");
   own.fov_deg = record.real("camera.fov_deg", own.fov_deg);
+  if (record.has("camera.view_height")) own.view_height = record.real("camera.view_height");
   return own;
+}
+
+/// Nothing where they are the defaults.
+void write_lens_and_crop(RecordWriter& r, const JobRequest& q) {
+  if (q.lens) {
+    r.real("lens.radius", q.lens->radius);
+    r.real("lens.focus_distance", q.lens->focus_distance);
+  }
+  if (!q.crop) return;
+  r.integer("crop.x", q.crop->x);
+  r.integer("crop.y", q.crop->y);
+  r.integer("crop.full_width", q.crop->full_width);
+  r.integer("crop.full_height", q.crop->full_height);
+}
+
+void read_lens_and_crop(const RecordReader& r, JobRequest& q) {
+  if (r.has("lens.radius")) q.lens = Lens{r.real("lens.radius"), r.real("lens.focus_distance", 1.0)};
+  if (!r.has("crop.x")) return;
+  q.crop = Crop{static_cast<int>(r.integer("crop.x")), static_cast<int>(r.integer("crop.y")),
+                static_cast<int>(r.integer("crop.full_width", q.width)),
+                static_cast<int>(r.integer("crop.full_height", q.height))};
 }
 
 void write_statistics(RecordWriter& r, const JobStatistics& s) {
@@ -175,6 +198,9 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   if (q.sampler != JobRequest{}.sampler) r.text("sampler", name(q.sampler));
   if (q.effects != JobRequest{}.effects) r.text("effects", q.effects);
   if (q.adaptive) r.integer("adaptive", 1);
+  if (q.filter != JobRequest{}.filter) r.text("filter", name(q.filter));
+  if (q.emitter_choice != JobRequest{}.emitter_choice) r.text("emitter_choice", name(q.emitter_choice));
+  write_lens_and_crop(r, q);
   if (q.reuse) r.integer("reuse", 1);
 }
 
@@ -203,6 +229,9 @@ JobRequest read_request(const RecordReader& r) {
   q.sampler = sampler_named(r.text("sampler")).value_or(q.sampler);
   q.effects = r.text("effects", q.effects);
   q.adaptive = r.integer("adaptive") != 0;
+  q.filter = filter_named(r.text("filter")).value_or(q.filter);
+  q.emitter_choice = emitter_choice_named(r.text("emitter_choice")).value_or(q.emitter_choice);
+  read_lens_and_crop(r, q);
   q.reuse = r.integer("reuse") != 0;
   return q;
 }

@@ -41,6 +41,9 @@ std::optional<Error> camera_error(const OwnCamera& camera) {
   if (!is_point(camera.eye)) return wrong("/camera/eye", "must be three finite numbers");
   if (!is_point(camera.look_at)) return wrong("/camera/look_at", "must be three finite numbers");
   if (!is_point(camera.up)) return wrong("/camera/up", "must be three finite numbers");
+  if (camera.view_height && !(*camera.view_height > 0.0 && *camera.view_height <= kMaxCoordinate)) {
+    return wrong("/camera/view_height", "must be a positive length");
+  }
   if (!(camera.fov_deg > 0.0 && camera.fov_deg < 180.0)) {
     return wrong("/camera/fov_deg", "must be above 0 and below 180");
   }
@@ -62,6 +65,33 @@ std::optional<Error> camera_error(const CameraChoice& choice) {
     return camera_error(std::get<OwnCamera>(choice));
   }
   return std::nullopt;
+}
+
+std::optional<Error> lens_error(const JobRequest& r) {
+  if (!r.lens) return std::nullopt;
+  if (!(r.lens->radius >= 0.0 && r.lens->radius <= kMaxCoordinate)) {
+    return wrong("/lens/radius", "must be a length of 0 or more");
+  }
+  if (r.lens->focus_distance > 0.0 && r.lens->focus_distance <= kMaxCoordinate) return std::nullopt;
+  return wrong("/lens/focus_distance", "must be a positive length");
+}
+
+std::optional<Error> crop_error(const JobRequest& r, const JobLimits& limits) {
+  if (!r.crop) return std::nullopt;
+  if (auto e = outside("/crop/full_width", r.crop->full_width, 1, limits.max_side)) return e;
+  if (auto e = outside("/crop/full_height", r.crop->full_height, 1, limits.max_side)) return e;
+  if (r.crop->x < 0 || r.width > r.crop->full_width - r.crop->x) {
+    return wrong("/crop/x", "the window leaves the whole picture: x + width must be at most full_width");
+  }
+  if (r.crop->y < 0 || r.height > r.crop->full_height - r.crop->y) {
+    return wrong("/crop/y", "the window leaves the whole picture: y + height must be at most full_height");
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> filter_error(const JobRequest& r) {
+  if (r.filter == PixelFilter::kBox || r.pixel_mode == PixelMode::kRandom) return std::nullopt;
+  return wrong("/filter", "goes with pixel_mode random: in the centre there is nothing to filter");
 }
 
 std::optional<Error> tiles_error(const JobRequest& r, const JobLimits& limits) {
@@ -146,6 +176,19 @@ std::string_view name(DirectionSampling value) {
 
 std::string_view name(Sampler value) { return value == Sampler::kRandom ? "random" : "sobol"; }
 
+std::string_view name(PixelFilter value) {
+  return value == PixelFilter::kBox ? "box" : "blackman_harris";
+}
+
+std::string_view name(EmitterChoice value) {
+  switch (value) {
+    case EmitterChoice::kPower: return "power";
+    case EmitterChoice::kTree: return "tree";
+    case EmitterChoice::kAuto: break;
+  }
+  return "auto";
+}
+
 std::optional<PixelMode> pixel_mode_named(std::string_view text) {
   if (text == "random") return PixelMode::kRandom;
   if (text == "centre") return PixelMode::kCentre;
@@ -163,6 +206,20 @@ std::optional<Sampler> sampler_named(std::string_view text) {
   return std::nullopt;
 }
 
+std::optional<PixelFilter> filter_named(std::string_view text) {
+  for (const auto value : {PixelFilter::kBox, PixelFilter::kBlackmanHarris}) {
+    if (name(value) == text) return value;
+  }
+  return std::nullopt;
+}
+
+std::optional<EmitterChoice> emitter_choice_named(std::string_view text) {
+  for (const auto value : {EmitterChoice::kAuto, EmitterChoice::kPower, EmitterChoice::kTree}) {
+    if (name(value) == text) return value;
+  }
+  return std::nullopt;
+}
+
 int depth_limit(const JobRequest& request) {
   constexpr int kRouletteLimit = 1024, kFixedDepth = 8;
   if (request.max_depth) return *request.max_depth;
@@ -177,7 +234,10 @@ Status validate(const JobRequest& request, const JobLimits& limits) {
   }
   if (auto e = name_error(request, limits)) return *e;
   if (auto e = camera_error(request.camera)) return *e;
+  if (auto e = lens_error(request)) return *e;
   if (auto e = range_error(request, limits)) return *e;
+  if (auto e = crop_error(request, limits)) return *e;
+  if (auto e = filter_error(request)) return *e;
   if (auto e = tiles_error(request, limits)) return *e;
   if (auto e = stop_error(request, limits)) return *e;
   if (auto e = branches_error(request, limits)) return *e;

@@ -26,6 +26,10 @@ render::Camera camera_of(const OwnCamera& own, const render::Scene& scene) {
   camera.up = render::cross(right, forward);
   camera.forward = forward;
   camera.fov_y_rad = own.fov_deg * std::numbers::pi / 180.0;
+  if (own.view_height) {
+    camera.projection = render::Projection::kOrthographic;
+    camera.view_height = *own.view_height;
+  }
   return camera;
 }
 
@@ -73,6 +77,15 @@ render::LightModel light_model_of(const JobRequest& request) {
   }
   m.roulette = o.roulette.value_or(m.roulette);
   return m;
+}
+
+render::EmitterChoice emitter_choice_of(const JobRequest& request) {
+  switch (request.emitter_choice) {
+    case EmitterChoice::kPower: return render::EmitterChoice::kPower;
+    case EmitterChoice::kTree: return render::EmitterChoice::kTree;
+    case EmitterChoice::kAuto: break;
+  }
+  return render::EmitterChoice::kAuto;
 }
 
 void add_once(JobWarning warning, std::vector<JobWarning>& warnings) {
@@ -147,16 +160,26 @@ Result<render::RenderSettings> render_settings(const JobRequest& request,
   if (const auto* own = std::get_if<OwnCamera>(&request.camera)) {
     settings.own_camera = camera_of(*own, scene);
   }
+  if (request.lens) {
+    if (!settings.own_camera) settings.own_camera = scene.cameras[static_cast<std::size_t>(*index)];
+    settings.own_camera->lens = {request.lens->radius, request.lens->focus_distance};
+  }
+  if (const auto& crop = request.crop) {
+    settings.crop = render::Crop{crop->x, crop->y, crop->full_width, crop->full_height};
+  }
   settings.light_model = light_model_of(request);
   settings.max_depth = depth_limit(request);
   settings.branches = request.branches;
   settings.seed = request.seed;
   settings.pixel_mode = request.pixel_mode == PixelMode::kRandom ? render::PixelMode::kRandom
                                                                  : render::PixelMode::kCentre;
+  settings.pixel_filter = request.filter == PixelFilter::kBox ? render::PixelFilter::kBox
+                                                              : render::PixelFilter::kBlackmanHarris;
   settings.direction_sampling = request.direction_sampling == DirectionSampling::kBsdf
                                     ? render::DirectionSampling::kBsdf
                                     : render::DirectionSampling::kUniformSphere;
   settings.emitter_sampling = request.emitter_sampling;
+  settings.emitter_choice = emitter_choice_of(request);
   settings.sampler = sampler_of(request);
   const auto effects = render::effect_choice_of(request.effects);
   if (!effects) {

@@ -11,11 +11,14 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/render/picture_scatter.hpp"
 #include "support/small_rooms.hpp"
 
 namespace {
 
 using namespace raykiln::render;
+using bench::means_of;
+using bench::Scatter;
 
 struct BenchScene {
   const char* name;
@@ -35,51 +38,6 @@ support::SceneBuilder box_under_lamp() {
 constexpr BenchScene kScenes[] = {{"box_under_lamp", box_under_lamp},
                                   {"diffuse_with_area_light", support::diffuse_with_area_light},
                                   {"glass_with_caustic", support::glass_with_caustic}};
-
-std::vector<double> means_of(const Film& film) {
-  std::vector<double> means = film.plane("beauty");
-  const auto counts = film.plane("samples");
-  for (std::size_t i = 0; i < means.size(); ++i) means[i] /= counts[i / 3];
-  return means;
-}
-
-/// Pictures of all seeds after n samples.
-struct Scatter {
-  explicit Scatter(std::size_t values) : sum(values), squares(values) {}
-  std::vector<double> sum, squares;
-  std::vector<double> whole;  ///< mean of each picture
-  void add(const std::vector<double>& picture) {
-    double mean = 0.0;
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      sum[i] += picture[i];
-      squares[i] += picture[i] * picture[i];
-      mean += picture[i] / static_cast<double>(sum.size());
-    }
-    whole.push_back(mean);
-  }
-  [[nodiscard]] double mean() const {
-    double total = 0.0;
-    for (const double m : whole) total += m / static_cast<double>(whole.size());
-    return total;
-  }
-  /// Of mean().
-  [[nodiscard]] double variance() const {
-    const auto n = static_cast<double>(whole.size());
-    double total = 0.0;
-    for (const double m : whole) total += (m - mean()) * (m - mean()) / (n * (n - 1.0));
-    return total;
-  }
-  [[nodiscard]] double rel_mse() const {
-    const auto n = static_cast<double>(whole.size());
-    const double floor = 0.01 * mean() * mean();
-    double total = 0.0;
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      const double m = sum[i] / n, scatter = std::fmax(0.0, squares[i] - n * m * m) / (n - 1.0);
-      total += scatter / (m * m + floor);
-    }
-    return total / static_cast<double>(sum.size());
-  }
-};
 
 struct Curve {
   std::vector<std::uint64_t> samples;

@@ -107,5 +107,58 @@ TEST(EstimatorsAgree, EmitterSamplingTamesASmallLamp) {
   EXPECT_LT(with.standard_error, 0.1 * without.standard_error);
 }
 
+/// The soft room with 300 lamps of all sizes in its upper half, which the camera does not see: lamps smaller
+/// than a pixel are noise that no choice among them cures.
+std::shared_ptr<const PreparedScene> room_of_lamps() {
+  SceneBuilder b = soft_room();
+  const auto number = [](std::uint64_t i, std::uint64_t what) {
+    return static_cast<float>(uniform(vertex_key(path_key(9, i, what), 0, 0), Dimension::kLightU));
+  };
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Vec3f at(1.8F * number(i, 0) - 0.9F, 0.9F * number(i, 1), 1.8F * number(i, 2) - 0.9F);
+    const float size = 0.002F + 0.05F * number(i, 3) * number(i, 3);
+    const Vec3f up(0, size * number(i, 4), size), aside(size, size * number(i, 5), 0);
+    b.triangle(at, at + aside, at + up, b.material(diffuse_material(Rgb(0.1F), Rgb(0.02F / (size * size)))));
+  }
+  b.look({0, -0.1, 0.9}, {0, -1, -0.3}, {0, 1, 0}, 0.8);
+  return b.prepare();
+}
+
+// 3 pairs at 4 sigma of the difference: false alarm 1.9e-4.
+TEST(EstimatorsAgree, HoweverEmittersAreChosen) {
+  const auto scene = room_of_lamps();
+  const auto render = [&](auto change, std::uint64_t samples) {
+    RenderSettings settings = base();
+    change(settings);
+    return support::estimate(support::render_all(*scene, settings, samples));
+  };
+  const Estimate tree = render([](auto& s) { s.emitter_choice = EmitterChoice::kTree; }, 256);
+  const Estimate power = render([](auto& s) { s.emitter_choice = EmitterChoice::kPower, s.seed = 1; }, 256);
+  const Estimate branches = render([](auto& s) { s.branches = 2, s.seed = 2; }, 128);
+  const Estimate sobol = render([](auto& s) { s.sampler = Sampler::kSobol, s.seed = 3; }, 256);
+  for (const Estimate& other : {power, branches, sobol}) {
+    const double sigma = std::hypot(tree.standard_error, other.standard_error);
+    EXPECT_NEAR(luminance(tree.mean), luminance(other.mean), 4.0 * sigma) << tree.standard_error;
+    EXPECT_LT(sigma, 0.03 * luminance(tree.mean)) << "too noisy to say anything";
+  }
+  EXPECT_LT(tree.standard_error, power.standard_error);
+}
+
+// A draw from the tree, too, is a function of the path alone.
+TEST(EstimatorsAgree, TheTreeGivesTheSameBytesHoweverTheWorkIsCut) {
+  const auto scene = room_of_lamps();
+  RenderSettings settings = base();
+  const TileResult whole = support::render_all(*scene, settings, 8);
+  settings.traversal = Traversal::kBruteForce;
+  const auto blocks = blocks_for(8);
+  Film one(16, 16), parts(16, 16);
+  merge(one, whole);
+  for (int y = 0; y < 16; y += 4) {
+    merge(parts, render_tile(*scene, settings, {0, y, 5, y + 4}, blocks, {}));
+    merge(parts, render_tile(*scene, settings, {5, y, 16, y + 4}, blocks, {}));
+  }
+  for (const char* plane : {"beauty", "luminance_moment"}) EXPECT_EQ(one.plane(plane), parts.plane(plane)) << plane;
+}
+
 }  // namespace
 }  // namespace raykiln::render

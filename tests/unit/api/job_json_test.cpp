@@ -55,6 +55,9 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.direction_sampling = DirectionSampling::kUniformSphere;
   request.emitter_sampling = false;
   request.sampler = Sampler::kSobol;
+  request.emitter_choice = EmitterChoice::kTree;
+  request.lens = Lens{0.25, 3.0};
+  request.crop = Crop{1, 2, 16384, 16384};
   request.effects = "without=refraction,roulette";
   request.light_model = LightModel::kSeed;
   request.light_model_overrides = {PhongDivisor::kMax, FresnelFormula::kSchlick, false, std::nullopt, true};
@@ -103,6 +106,15 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/emitter_sampling", 1, "/emitter_sampling wrong_type");
   check("/sampler", "halton", "/sampler invalid_value");
   check("/adaptive", "yes", "/adaptive wrong_type");
+  check("/emitter_choice", "luck", "/emitter_choice invalid_value");
+  check("/filter", "gauss", "/filter invalid_value");
+  check("/lens", 0.1, "/lens wrong_type");
+  check("/lens", {{"radius", 0.1}}, "/lens/focus_distance missing_field");
+  check("/lens", {{"focus_distance", 1}}, "/lens/radius missing_field");
+  check("/crop", json::array(), "/crop wrong_type");
+  check("/crop", {{"x", 0}, {"y", 0}, {"full_width", 640}}, "/crop/full_height missing_field");
+  check("/camera", {{"eye", {0, 0, 0}}, {"look_at", {0, 0, 1}}, {"fov_deg", 40}, {"view_height", 1}},
+        "/camera/view_height invalid_value");
   check("/effects", "none", "/effects invalid_value");
   check("/effects", "without=refraction", "/effects invalid_value");
   check("/effects", 3, "/effects wrong_type");

@@ -8,7 +8,7 @@ namespace {
 
 EffectPlan plan(support::EffectScene s, const char* choice) {
   const Scene& scene = s.builder.scene();
-  return plan_effects(scene, use_of(scene), {.max_depth = path_limit(s.settings)},
+  return plan_effects(scene, use_of(scene), {.max_depth = path_limit(s.settings), .lens_radius = scene.cameras[0].lens.radius},
                       effect_choice_of(choice).value());
 }
 

@@ -2,9 +2,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <vector>
 
 #include "raykiln/integrator/camera_ray.hpp"
 #include "raykiln/math/float_bits.hpp"
+#include "raykiln/sampling/warp.hpp"
+#include "support/statistics.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -88,6 +92,89 @@ TEST(CameraRays, WhatPassesTheGeometryByMeetsNothing) {
   }
   camera.eye = Vec3d(0.0);
   EXPECT_EQ(middle_ray(CameraRays(camera, 1, 1, Bounds3f{})).t_max, 0.0F);
+}
+
+TEST(CameraRays, OrthographicOnesAreParallelAndCoverTheRectangle) {
+  Camera camera = wide_camera();
+  camera.projection = Projection::kOrthographic;
+  camera.view_height = 4.0;
+  camera.eye = Vec3d(0.0, 0.0, 0.5);
+  const CameraRays rays(camera, 8, 4, {Vec3f(-9.0F), Vec3f(9.0F)});
+  const VertexKey key = vertex_key(path_key(1, 0, 0), 0, 0);
+  for (const auto& [x, y, at] : {std::tuple{0, 0, Vec3f(-3.5F, 1.5F, 0.5F)}, {7, 3, Vec3f(3.5F, -1.5F, 0.5F)}}) {
+    const Ray ray = rays.ray(x, y, PixelMode::kCentre, key);
+    EXPECT_EQ(ray.o, at) << "starts among the geometry, at its own place";
+    EXPECT_EQ(ray.d, Vec3f(0, 0, -1));
+  }
+  camera.eye.z = 1e6;  // from far off: just before the geometry
+  const Ray far = CameraRays(camera, 8, 4, kUnitBox).ray(4, 2, PixelMode::kCentre, key);
+  EXPECT_NEAR(far.o.z, 1.0F, 1e-6F);
+  EXPECT_EQ(Vec3f(far.o.x, far.o.y, 0.0F), Vec3f(0.5F, -0.5F, 0.0F));
+}
+
+/// Where a ray meets the plane `depth` in front of wide_camera().
+Vec3d at_depth(const Ray& ray, double depth) {
+  const Vec3d o(ray.o), d(ray.d);
+  return o + (-depth - o.z) / d.z * d;
+}
+
+// Rays of one point of the picture meet in the plane of focus; at depth z they fill a disk of radius
+// R |z - f| / f about the ray through the middle, evenly.
+TEST(CameraRays, TheCircleOfConfusionIsThatOfAThinLens) {
+  constexpr double kRadius = 0.05, kFocus = 3.0;
+  for (const Projection projection : {Projection::kPerspective, Projection::kOrthographic}) {
+    Camera camera = wide_camera();
+    camera.projection = projection;
+    camera.view_height = 2.0;
+    const Bounds3f everywhere{Vec3f(-99.0F), Vec3f(99.0F)};
+    const CameraRays pinhole(camera, 16, 8, everywhere);
+    camera.lens = {.radius = kRadius, .focus_distance = kFocus};
+    const CameraRays rays(camera, 16, 8, everywhere);
+    for (const double z : {0.5, kFocus, 12.0}) {
+      constexpr int kRays = 4000, kRings = 10;
+      const double blur = kRadius * std::abs(z - kFocus) / kFocus;
+      std::vector<double> seen(4 * kRings, 0.0), expected(4 * kRings, kRays / (4.0 * kRings));
+      for (std::uint64_t i = 0; i < kRays; ++i) {
+        const VertexKey key = vertex_key(path_key(3, i, 0), 0, 0);
+        const Vec3d off = at_depth(rays.ray(13, 1, PixelMode::kCentre, key), z) -
+                          at_depth(pinhole.ray(13, 1, PixelMode::kCentre, key), z);
+        ASSERT_LE(length(off), blur + 1e-5) << z;
+        if (blur == 0.0) continue;
+        const double ring = std::min(kRings - 1.0, std::floor(kRings * dot(off, off) / (blur * blur)));
+        seen[static_cast<std::size_t>(4.0 * ring) + (off.x > 0.0 ? 1U : 0U) + (off.y > 0.0 ? 2U : 0U)] += 1.0;
+      }
+      if (blur == 0.0) continue;
+      EXPECT_GT(support::chi_square_p(seen, expected), support::sidak_level(4)) << z;
+    }
+  }
+}
+
+// The window by its own definition, summed up numerically.
+TEST(PixelFilter, DrawsBlackmanHarris) {
+  constexpr int kSteps = 30000;
+  double total = 0.0, squares = 0.0, fourth = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = (i + 0.5) / kSteps, x = 3.0 * (t - 0.5);
+    const double w = 0.35875 - 0.48829 * std::cos(2 * kPi * t) + 0.14128 * std::cos(4 * kPi * t) -
+                     0.01168 * std::cos(6 * kPi * t);
+    total += w;
+    squares += w * x * x;
+    fourth += w * x * x * x * x;
+  }
+  double drawn_squares = 0.0, drawn_fourth = 0.0, before = -1.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double x = filtered_offset(PixelFilter::kBlackmanHarris, (i + 0.5) / kSteps) - 0.5;
+    EXPECT_GT(x, before - 0.5) << "rises";
+    before = x + 0.5;
+    drawn_squares += x * x / kSteps;
+    drawn_fourth += x * x * x * x / kSteps;
+  }
+  EXPECT_NEAR(drawn_squares, squares / total, 1e-5);
+  EXPECT_NEAR(drawn_fourth, fourth / total, 1e-5);
+  EXPECT_NEAR(filtered_offset(PixelFilter::kBlackmanHarris, 0.5), 0.5, 1e-11);
+  EXPECT_GE(filtered_offset(PixelFilter::kBlackmanHarris, 0.0), -1.0);
+  EXPECT_LE(filtered_offset(PixelFilter::kBlackmanHarris, 1.0 - 0x1p-53), 2.0);
+  EXPECT_EQ(filtered_offset(PixelFilter::kBox, 0.3), 0.3);
 }
 
 }  // namespace

@@ -174,12 +174,18 @@ TEST(Gltf, CamerasLookAlongMinusZ) {
   GltfBuilder builder;
   builder.triangle();
   builder.root["cameras"] = {{{"type", "perspective"}, {"name", "c"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}},
-                             {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}}}}};
+                             {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 2.5}}}},
+                             {{"type", "fisheye"}}};
   builder.root["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, 2}}, {"scale", {3, 3, 3}}});
   builder.root["nodes"].push_back({{"camera", 1}});
-  builder.root["scenes"][0]["nodes"] = {0, 1, 2};
+  builder.root["nodes"].push_back({{"camera", 2}});
+  builder.root["scenes"][0]["nodes"] = {0, 1, 2, 3};
   const auto imported = scene_of(builder);
-  ASSERT_EQ(imported.scene.cameras.size(), 1U);
+  ASSERT_EQ(imported.scene.cameras.size(), 2U);
+  EXPECT_EQ(imported.scene.cameras[0].projection, Projection::kPerspective);
+  EXPECT_EQ(imported.scene.cameras[1].projection, Projection::kOrthographic);
+  EXPECT_EQ(imported.scene.cameras[1].view_height, 5.0);
+  EXPECT_EQ(imported.scene.cameras[1].name, "camera 2");
   EXPECT_EQ(imported.scene.cameras[0].name, "c");
   EXPECT_EQ(imported.scene.cameras[0].eye, Vec3d(0, 0, 2));
   EXPECT_EQ(imported.scene.cameras[0].forward, Vec3d(0, 0, -1));

@@ -55,6 +55,21 @@ TEST(Sidecar, SetsCamerasLightsBackgroundAndMaterials) {
   EXPECT_TRUE(imported.report.warnings.empty());
 }
 
+TEST(Sidecar, CamerasMayHaveALensOrBeOrthographic) {
+  const auto imported = expect_scene({{"a.obj", kObj}, {"raykiln.json", R"({"scale": 0.5, "cameras": [
+      {"eye": [0, 0, 4], "look_at": [0, 0, 0], "lens_radius": 0.5},
+      {"eye": [0, 0, 4], "look_at": [0, 0, 0], "lens_radius": 0.5, "focus_distance": 3},
+      {"name": "plan", "eye": [0, 0, 4], "look_at": [0, 0, 0], "view_height": 10}]})"}});
+  const auto& cameras = imported.scene.cameras;
+  ASSERT_EQ(cameras.size(), 3U);
+  EXPECT_EQ(cameras[0].lens.radius, 0.25);
+  EXPECT_EQ(cameras[0].lens.focus_distance, 2.0) << "what it looks at is sharp";
+  EXPECT_EQ(cameras[1].lens.focus_distance, 1.5);
+  EXPECT_EQ(cameras[2].projection, Projection::kOrthographic);
+  EXPECT_EQ(cameras[2].view_height, 5.0);
+  EXPECT_EQ(cameras[2].lens.radius, 0.0);
+}
+
 TEST(Sidecar, ScaleAppliesToEveryPosition) {
   const auto imported = expect_scene({{"a.obj", kObj}, {"raykiln.json", R"({"scale": 0.5,
       "camera": {"eye": [0, 0, 4], "look_at": [0, 0, 0]},

@@ -37,6 +37,13 @@ TEST(JobRequest, IsCheckedAgainstEveryLimit) {
       {"/camera/up", [](JobRequest& r) { r.camera = OwnCamera{{}, {0, 2, 0}, {0, 1, 0}, 40}; }},
       {"/camera/eye", [](JobRequest& r) { r.camera = OwnCamera{{NAN, 0, 0}, {0, 0, 1}, {0, 1, 0}, 40}; }},
       {"/camera/fov_deg", [](JobRequest& r) { r.camera = OwnCamera{{}, {0, 0, 1}, {0, 1, 0}, NAN}; }},
+      {"/camera/view_height", [](JobRequest& r) { r.camera = OwnCamera{{}, {0, 0, 1}, {0, 1, 0}, 40, -1.0}; }},
+      {"/lens/radius", [](JobRequest& r) { r.lens = Lens{-1.0, 1.0}; }},
+      {"/lens/focus_distance", [](JobRequest& r) { r.lens = Lens{1.0, NAN}; }},
+      {"/crop/x", [](JobRequest& r) { r.crop = Crop{1, 0, r.width, r.height}; }},
+      {"/crop/y", [](JobRequest& r) { r.crop = Crop{0, -1, r.width, r.height}; }},
+      {"/crop/full_width", [](JobRequest& r) { r.crop = Crop{0, 0, 1'000'000, r.height}; }},
+      {"/filter", [](JobRequest& r) { r.filter = PixelFilter::kBlackmanHarris, r.pixel_mode = PixelMode::kCentre; }},
   };
   for (const auto& [where, spoil] : rows) {
     JobRequest request = good();
@@ -89,7 +96,11 @@ TEST(JobRequest, ResultDigestLeavesOutWhatChangesNoPicture) {
       [](JobRequest& r) { ++r.seed; },
       [](JobRequest& r) { r.emitter_sampling = !r.emitter_sampling; },
       [](JobRequest& r) { r.sampler = Sampler::kSobol; },
-      [](JobRequest& r) { r.adaptive = true; }};
+      [](JobRequest& r) { r.adaptive = true; },
+      [](JobRequest& r) { r.filter = PixelFilter::kBlackmanHarris; },
+      [](JobRequest& r) { r.emitter_choice = EmitterChoice::kTree; },
+      [](JobRequest& r) { r.lens = Lens{0.0, 1.0}; },
+      [](JobRequest& r) { r.crop = Crop{0, 0, r.width, r.height}; }};
   for (const auto& change : changes) {
     JobRequest other = good();
     change(other);
@@ -102,7 +113,11 @@ TEST(JobRecord, ReadsBack) {
   job.id = "j_1";
   job.request = good();
   job.request.name = "two words\\";
-  job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3};
+  job.request.lens = Lens{0.05, 2.5};
+  job.request.crop = Crop{3, 4, 1000, 2000};
+  job.request.filter = PixelFilter::kBlackmanHarris;
+  job.request.emitter_choice = EmitterChoice::kPower;
+  job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3, 7.5};
   job.request.seed = (1ULL << 53) - 1;
   job.request.reuse = true;
   job.request.adaptive = true;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "support/scene_pieces.hpp"
@@ -213,6 +214,88 @@ TEST(RenderTile, ChannelsPermuteBitForBit) {
     ASSERT_EQ(turned[i + 1], plain[i + 2]);
     ASSERT_EQ(turned[i + 2], plain[i]);
   }
+}
+
+// A window is a piece of the whole, bit for bit, whatever the filter, the sampler and the lens.
+TEST(RenderTile, ACropWindowHasThePixelsOfTheWholePicture) {
+  SceneBuilder room = support::mixed_room();
+  for (const double radius : {0.0, 0.03}) {
+    room.scene().cameras[0].lens = {.radius = radius, .focus_distance = 1.2};
+    const auto scene = room.prepare();
+    RenderSettings settings = sized(24, 20, 4);
+    settings.pixel_filter = radius > 0.0 ? PixelFilter::kBlackmanHarris : PixelFilter::kBox;
+    settings.sampler = radius > 0.0 ? Sampler::kSobol : Sampler::kRandom;
+    Film whole = make_film(settings);
+    merge(whole, support::render_all(*scene, settings, 4));
+    settings.width = 9;
+    settings.height = 6;
+    settings.crop = Crop{.x = 11, .y = 7, .full_width = 24, .full_height = 20};
+    ASSERT_FALSE(settings_error(settings, room.scene()));
+    Film window = make_film(settings);
+    merge(window, support::render_all(*scene, settings, 4));
+    const auto all = whole.plane("beauty"), part = window.plane("beauty");
+    for (std::size_t y = 0; y < 6; ++y) {
+      for (std::size_t x = 0; x < 9 * 3; ++x) {
+        ASSERT_EQ(part[y * 27 + x], all[(y + 7) * 72 + 33 + x]) << x / 3 << ' ' << y;
+      }
+    }
+  }
+  RenderSettings outside = sized(9, 6, 1);
+  outside.crop = Crop{.x = 16, .y = 0, .full_width = 24, .full_height = 20};
+  EXPECT_TRUE(settings_error(outside, room.scene()));
+}
+
+// A square of side s and radiance L at depth z before a lens of radius R focused at f fills a disk of the
+// radius R |z/f - 1| with s^2 L / (pi R^2 (z/f - 1)^2); without the lens it is one bright pixel.
+TEST(RenderTile, AnEmitterOutOfFocusIsADiskOfItsLight) {
+  constexpr double kSide = 0.02, kLight = 1e3, kRadius = 0.1, kFocus = 2.0, kDepth = 4.0;
+  SceneBuilder b;
+  const auto h = static_cast<float>(0.5 * kSide);
+  const auto z = static_cast<float>(-kDepth);
+  b.quad({Vec3f(-h, -h, z), {h, -h, z}, {h, h, z}, {-h, h, z}},
+         b.material(diffuse_material(Rgb(0.0F), Rgb(static_cast<float>(kLight)))));
+  b.camera({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.2);
+  b.scene().cameras[0].lens = {.radius = kRadius, .focus_distance = kFocus};
+  const auto scene = b.prepare();
+  RenderSettings settings = sized(24, 24, 0);
+  const double pixel = 2.0 * kFocus * std::tan(0.1) / 24.0;  // in the plane of focus
+  // There a ray to the point at depth z passes at R (1 - f/z) at most from the axis.
+  const double blur = kRadius * (1.0 - kFocus / kDepth) / pixel;
+  const double share = kSide / (kRadius * (kDepth / kFocus - 1.0));
+  const double radiance = kLight * share * share / 3.14159265358979;
+  const auto picture = [&] {
+    Film film = make_film(settings);
+    merge(film, support::render_all(*scene, settings, 1024));
+    return film;
+  };
+  const Film film = picture();
+  const auto beauty = film.plane("beauty"), moments = film.plane("luminance_moment");
+  double mean = 0.0, variance = 0.0, inside = 0.0;
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      const auto i = static_cast<std::size_t>(24 * y + x);
+      const double far = std::hypot(x - 11.5, y - 11.5);
+      if (far > blur + 1.5) {
+        EXPECT_EQ(beauty[3 * i], 0.0) << x << ' ' << y;
+      }
+      if (far > blur - 1.0) continue;
+      inside += 1.0;
+      mean += beauty[3 * i] / 1024.0;
+      variance += moments[i] / 1024.0 / 1024.0;
+    }
+  }
+  EXPECT_EQ(inside, 12.0);
+  EXPECT_NEAR(mean / inside, radiance, 4.0 * std::sqrt(variance) / inside + 1e-3 * radiance);
+
+  settings.effects.without = {Effect::kDepthOfField};
+  const Film sharp = picture();
+  settings.effects.without = {};
+  b.scene().cameras[0].lens.radius = 0.0;
+  const auto pinhole = b.prepare();
+  Film same = make_film(settings);
+  merge(same, support::render_all(*pinhole, settings, 1024));
+  EXPECT_EQ(sharp.plane("beauty"), same.plane("beauty"));
+  EXPECT_EQ(sharp.plane("beauty").front(), 0.0);
 }
 
 }  // namespace

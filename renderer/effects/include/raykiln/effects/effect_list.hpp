@@ -25,4 +25,5 @@
   ROW(Textures, textures)                        \
   ROW(IndirectLight, indirect_light)             \
   ROW(Caustics, caustics)                        \
-  ROW(Roulette, roulette)
+  ROW(Roulette, roulette)                        \
+  ROW(DepthOfField, depth_of_field)

@@ -27,6 +27,7 @@ struct EffectJob {
   LightModel light_model = kPhysicalModel;
   int max_depth = 8;  ///< reflections after the first hit
   bool emitter_sampling = true;
+  double lens_radius = 0.0;  ///< of the camera, metres
 };
 
 struct EffectView {

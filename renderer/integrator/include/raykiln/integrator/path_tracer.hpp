@@ -30,7 +30,10 @@ struct PathSettings {
   int max_depth = 8;  ///< reflections after the first hit; with roulette (in `bsdf`) a hard limit
   int branches = 1;   ///< rays shot from each hit
   PixelMode pixel_mode = PixelMode::kRandom;
+  PixelFilter pixel_filter = PixelFilter::kBox;
+  int window_x = 0, window_y = 0;  ///< where pixel (0, 0) lies in the camera's picture
   bool emitter_sampling = true;
+  EmitterChoice emitter_choice = EmitterChoice::kAuto;
   BsdfModel bsdf;
   Traversal traversal = Traversal::kTree;
   /// What is to be simulated. Precondition: what is missing here is not called for, or in left_out.

@@ -18,12 +18,20 @@
 #include "raykiln/sampling/random.hpp"          // Sampler
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/shading/bsdf.hpp"  // DirectionSampling
+#include "raykiln/shading/emitter_choice.hpp"
 #include "raykiln/shading/light_model.hpp"
 
 namespace raykiln::render {
 
+/// The whole picture of which a window is rendered, and where in it the window's pixel (0, 0) lies.
+struct Crop {
+  int x = 0, y = 0;
+  int full_width = 0, full_height = 0;
+};
+
 struct RenderSettings {
   int width = 640, height = 480;
+  std::optional<Crop> crop{};    ///< unset: width x height is the whole picture. Pixels are those of the whole
   int camera = 0;                ///< index into Scene::cameras
   std::optional<Camera> own_camera{};  ///< used instead of `camera` when set; as in Scene::cameras
   LightModel light_model = kPhysicalModel;
@@ -32,8 +40,10 @@ struct RenderSettings {
   std::uint64_t seed = 0;
   Sampler sampler = Sampler::kRandom;
   PixelMode pixel_mode = PixelMode::kRandom;
+  PixelFilter pixel_filter = PixelFilter::kBox;  ///< of PixelMode::kRandom
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;  ///< with multiple importance sampling
+  EmitterChoice emitter_choice = EmitterChoice::kAuto;
   Traversal traversal = Traversal::kTree;
   EffectChoice effects{};        ///< kAuto and kAll give the same bytes
 };
@@ -63,6 +73,9 @@ inline constexpr int kFixedDepth = 8;       ///< depth of all other paths, if un
 /// First thing that is wrong with the settings for this scene, or nothing.
 [[nodiscard]] std::optional<std::string> settings_error(const RenderSettings& settings,
                                                         const Scene& scene);
+
+/// The camera that these settings look through. Precondition: settings_error() is nothing.
+[[nodiscard]] const Camera& camera_of(const RenderSettings& settings, const Scene& scene);
 
 /// What is known to be wrong with a light model in this scene, for people beside the picture.
 struct LightModelWarning {

@@ -28,6 +28,12 @@ inline constexpr double kPi = 3.14159265358979323846;
 [[nodiscard]] Vec3f sample_uniform_sphere(double u, double v);
 inline constexpr double kUniformSpherePdf = 0.25 / kPi;
 
+/// Uniform in the disk of radius 1, neighbours stay neighbours (Shirley & Chiu 1997); density 1/pi.
+struct DiskPoint {
+  double x = 0.0, y = 0.0;
+};
+[[nodiscard]] DiskPoint sample_uniform_disk(double u, double v);
+
 /// Barycentrics (b1, b2) of a point uniform in a triangle; density 1/area (Turk 1990).
 struct TrianglePoint {
   double b1 = 0.0, b2 = 0.0;

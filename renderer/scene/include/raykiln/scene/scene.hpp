@@ -65,8 +65,17 @@ struct Material {
          (m.transparent > 0.0F || m.facets.edge > 0.0F || m.facets.coverage < 1.0F);
 }
 
-/// Pinhole. right, up, forward are orthonormal (right = forward x up); fov is the full vertical
-/// angle. Pixel (0, 0) is at the top left. In double: from 10^6 times the scene's size one step of a
+enum class Projection : std::uint8_t { kPerspective, kOrthographic };
+
+/// A thin lens. What lies `focus_distance` along the camera's forward is sharp.
+struct Lens {
+  double radius = 0.0;          ///< metres; 0 is a pinhole
+  double focus_distance = 1.0;  ///< metres, > 0
+};
+
+/// right, up, forward are orthonormal (right = forward x up); fov is the full vertical
+/// angle. An orthographic camera looks along forward from all of the rectangle about its eye, and sees
+/// nothing behind it. Pixel (0, 0) is at the top left. In double: from 10^6 times the scene's size one step of a
 /// float eye, or of a float direction, is as long as 6 % of the scene.
 struct Camera {
   std::string name;
@@ -74,7 +83,10 @@ struct Camera {
   Vec3d right{1.0, 0.0, 0.0};
   Vec3d up{0.0, 1.0, 0.0};
   Vec3d forward{0.0, 0.0, -1.0};
-  double fov_y_rad = 0.7;
+  double fov_y_rad = 0.7;       ///< of kPerspective
+  Projection projection = Projection::kPerspective;
+  double view_height = 1.0;     ///< of kOrthographic: from the picture's lower edge to its upper one, metres
+  Lens lens{};
 };
 
 struct EnvironmentMap;   // environment_map.hpp

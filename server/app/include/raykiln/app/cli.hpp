@@ -17,6 +17,7 @@ namespace raykiln::server {
 struct PictureOptions {
   JobRequest request;  ///< without the scene
   std::string camera;  ///< name or index; empty: the first
+  std::vector<int> crop;  ///< x, y, width and height in pixels; empty: all of it
   double exposure_stops = 0.0;
   bool half = false;  ///< EXR in half floats
 };

@@ -21,6 +21,8 @@ inline constexpr int kAdaptiveTile = 16;
 enum class PixelMode { kRandom, kCentre };
 enum class DirectionSampling { kBsdf, kUniformSphere };
 enum class Sampler { kRandom, kSobol };
+enum class PixelFilter { kBox, kBlackmanHarris };
+enum class EmitterChoice { kAuto, kPower, kTree };
 
 /// When a picture is done: whichever comes first.
 struct StopRule {
@@ -34,12 +36,25 @@ struct StopRule {
 /// `seconds` of a job that names an error alone, so that a target out of reach ends too.
 inline constexpr double kDefaultErrorSeconds = 3600.0;
 
-/// A pinhole of the user's own, world space in metres.
+/// A camera of the user's own, world space in metres.
 struct OwnCamera {
   std::array<double, 3> eye{};
   std::array<double, 3> look_at{};
   std::array<double, 3> up{0.0, 1.0, 0.0};
   double fov_deg = 40.0;  ///< full vertical angle
+  std::optional<double> view_height{};  ///< makes it orthographic: height of what it sees, metres
+};
+
+/// A thin lens; radius 0 is a pinhole. Metres.
+struct Lens {
+  double radius = 0.0;
+  double focus_distance = 1.0;  ///< along the line of sight
+};
+
+/// The whole picture of which the job renders a window, and where in it the window begins.
+struct Crop {
+  int x = 0, y = 0;
+  int full_width = 1, full_height = 1;
 };
 
 /// Index into the cameras of the scene, name of one of them, or one of the user's own.
@@ -49,7 +64,9 @@ struct JobRequest {
   std::string name;             ///< free text for people; may be empty
   std::string scene;            ///< scene id: 64 hexadecimal digits
   CameraChoice camera = 0;
+  std::optional<Lens> lens;     ///< in place of the camera's
   int width = 640, height = 480;
+  std::optional<Crop> crop;     ///< unset: width x height is the whole picture
   StopRule stop;
   LightModel light_model = LightModel::kPhysical;
   LightModelOverrides light_model_overrides;
@@ -59,8 +76,10 @@ struct JobRequest {
   int priority = 10;            ///< 1 .. 100: share of the workers relative to other jobs
   int branches = 1;             ///< rays shot from each hit; more than 1 is the seed's tree
   PixelMode pixel_mode = PixelMode::kRandom;
+  PixelFilter filter = PixelFilter::kBox;
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;
+  EmitterChoice emitter_choice = EmitterChoice::kAuto;
   Sampler sampler = Sampler::kRandom;
   /// "auto", "all" or "without=refraction,roulette": which effects are simulated. The names are the
   /// renderer's; whoever reads a request from outside checks them.
@@ -74,9 +93,13 @@ struct JobRequest {
 [[nodiscard]] std::string_view name(PixelMode value);
 [[nodiscard]] std::string_view name(DirectionSampling value);
 [[nodiscard]] std::string_view name(Sampler value);
+[[nodiscard]] std::string_view name(PixelFilter value);
+[[nodiscard]] std::string_view name(EmitterChoice value);
 [[nodiscard]] std::optional<PixelMode> pixel_mode_named(std::string_view name);
 [[nodiscard]] std::optional<DirectionSampling> direction_sampling_named(std::string_view name);
 [[nodiscard]] std::optional<Sampler> sampler_named(std::string_view name);
+[[nodiscard]] std::optional<PixelFilter> filter_named(std::string_view name);
+[[nodiscard]] std::optional<EmitterChoice> emitter_choice_named(std::string_view name);
 
 /// Reflections after the first hit at which paths end: as asked for, else 1024 where roulette ends
 /// them before (one ray a hit), else 8.
