@@ -95,8 +95,8 @@ def sensor(camera: dict, size) -> dict:
     look = mi.ScalarTransform4f().look_at(origin=camera["eye"], target=camera["look_at"],
                                           up=camera.get("up", [0, 1, 0]))
     lens = {"type": "perspective"}
-    if camera.get("aperture_radius"):
-        lens = {"type": "thinlens", "aperture_radius": camera["aperture_radius"],
+    if camera.get("lens_radius"):
+        lens = {"type": "thinlens", "aperture_radius": camera["lens_radius"],
                 "focus_distance": camera["focus_distance"]}
     return {**lens, "fov": camera.get("fov_deg", 40), "fov_axis": "y", "to_world": look,
             "near_clip": 1e-3, "far_clip": 1e5, "sampler": {"type": "independent"},

@@ -197,5 +197,5 @@ def foliage(folder: Path):
 
 def thin_lens(folder: Path):
     balls = [sphere((x, 0.3, z), 0.3, "white", 2) for x, z in ((-0.6, -0.6), (0, 0.1), (0.5, 0.8))]
-    camera = {**FRONT, "aperture_radius": 0.12, "focus_distance": 4.0}
+    camera = {**FRONT, "lens_radius": 0.12, "focus_distance": 4.0}
     scene_files.write_obj(folder, lit_room() + balls, ROOM_MTL, {"camera": camera, "background": [0, 0, 0]})
