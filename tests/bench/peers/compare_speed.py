@@ -49,7 +49,7 @@ def own() -> float:
 
 class Raykiln:
     def __init__(self, program, folder, side, threads, sampler):
-        self.name, self.folder, self.target = f"raykiln {sampler}", folder, folder / f"{sampler}.exr"
+        self.name, self.folder, self.target = f"raykiln {sampler}", folder, WORK / f"{sampler}.exr"
         self.command = [program, "-q", "render", str(folder), "-o", str(self.target), "--size",
                         f"{side}x{side}", "--threads", str(threads), "--sampler", sampler]
         self.start = None
