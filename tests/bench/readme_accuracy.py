@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""Writes the README's table and plots of what knobs cost, between the marks `<!-- accuracy:plots -->` and
-`<!-- /accuracy:plots -->`; prints tables of whether error targets are kept and what adaptive sampling saves.
+"""Writes plots and tables of accuracy, each between its marks `<!-- accuracy:NAME -->` and `<!-- /accuracy:NAME -->`: `plots`, what knobs
+cost; `targets`, whether error targets are kept; `adaptive`, what placing samples saves, all three in the README; and `bounds`, what it
+can save at most, in renderer/accuracy/README.md.
 
-    tests/bench/readme_accuracy.py [--bin build/test/bin] [--seconds 1] [--reference-seconds 60] [--only plots|targets]
+    tests/bench/readme_accuracy.py [--bin build/test/bin] [--seconds 1] [--reference-seconds 60] [--only plots|targets|adaptive|bounds]
 
-Three scenes: the demo, the demo with all its materials matte, and a box in the open under a point light and a sky. A
-minute of a quiet machine for each second of --seconds; targets take about twenty minutes.
+Knobs in three scenes: the demo, the demo with all its materials matte, and a box in the open under a point light and a sky. The rest in all
+scenes of the README: the demo, the gallery, and those of the table of effects. A minute of a quiet machine for each second of --seconds; targets
+take ten minutes, adaptive half an hour, bounds three minutes. --json FILE... takes what bench_adaptive has printed instead of running it.
 """
 
 import argparse
@@ -18,7 +20,8 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/e2e"))
+sys.path[:0] = [str(ROOT / "tests/e2e"), str(ROOT / "tests/bench/gallery")]
+from scenes import SCENES  # noqa: E402
 from support.scenes import box_files  # noqa: E402
 
 PLOTS = ROOT / "renderer/study/plots"
@@ -96,20 +99,45 @@ def plots(options) -> str:
     return f"{images}\n\n{knob_table(reports)}"
 
 
-def targets(options) -> str:
-    def bench(*arguments):
-        run = subprocess.run([options.bin / "bench_adaptive", *map(str, arguments), ROOT / "server/app/demo"],
-                             stdout=subprocess.PIPE, check=True)
-        return json.loads(run.stdout)["scenes"]
+def judged(options, *question: str) -> list:
+    """What bench_adaptive says of the README's scenes; with the size of each."""
+    if options.json:
+        found = [json.loads(file.read_text()) for file in options.json]
+    else:
+        with tempfile.TemporaryDirectory() as scratch:
+            made = []
+            for name, write in SCENES.items():
+                made.append(Path(scratch) / name)
+                made[-1].mkdir()
+                write(made[-1])
+            run = subprocess.run([options.bin / "bench_adaptive", *question, ROOT / "server/app/demo", *made, "matte_point_light",
+                                  "diffuse_cornell", "everything"], stdout=subprocess.PIPE, check=True)
+        found = [json.loads(run.stdout)]
+    return [row | {"size": f"{f['width']} x {f['height']}"} for f in found for row in f["scenes"]]
 
-    lines = ["| scene | target | samples | flagged | true error over the target | kept |", "|---|---|---|---|---|---|"]
-    for row in bench(32, options.seeds):
+
+def targets(options) -> str:
+    lines = ["| scene | pixels | target | samples | flagged | true error over the target | kept |", "|---|---|---|---|---|---|---|"]
+    for row in judged(options, "--targets", options.target_size, str(options.seeds)):
         even = row["even"]
-        lines.append(f"| {row['scene']} | {100 * row['target']:.2g} % | {even['samples']:.0f} | {even['flagged']} of {row['seeds']} | "
-                     f"{even['least']:.2f} to {even['largest']:.2f} | {even['kept']} of {row['seeds']} |")
-    lines += ["", "| scene | samples, even | adaptive | time to equal error, even : adaptive | at most |", "|---|---|---|---|---|"]
-    for row in bench(96, max(4, options.seeds // 5)):
-        lines.append(f"| {row['scene']} | {row['even']['samples']:.0f} | {row['adaptive']['samples']:.0f} | {row['gain']:.2f} | {row['bound']:.2f} |")
+        lines.append(f"| {row['scene']} | {row['size']} | {100 * row['target']:.2g} % | {even['samples']:.0f} | "
+                     f"{even['flagged']} of {row['seeds']} | {even['least']:.2f} to {even['largest']:.2f} | "
+                     f"{even['kept']} of {row['seeds']} |")
+    return "\n".join(lines) + "\n"
+
+
+def adaptive(options) -> str:
+    lines = ["| scene | pixels, seeds | target | samples, even | adaptive | time to equal error, even : adaptive | rays | rays at most |", "|---" * 8 + "|"]
+    for row in judged(options, options.adaptive_size, str(max(3, options.seeds // 5))):
+        lines.append(f"| {row['scene']} | {row['size']}, {row['seeds']} | {100 * row['target']:.2g} % | {row['even']['samples']:.0f} | "
+                     f"{row['adaptive']['samples']:.0f} | {row['gain']:.2f} | {row['gain_in_rays']:.2f} | {row['bound']:.2f} |")
+    return "\n".join(lines) + "\n"
+
+
+def bounds(options) -> str:
+    lines = ["| scene | pixels | bound, in rays | blind to cost | left by the plan |", "|---|---|---|---|---|"]
+    for row in judged(options, options.bounds_size, "0"):
+        lines.append(f"| {row['scene']} | {row['size']} | {row['bound']:.2f} | {row['bound_in_samples']:.2f} | {row['left']:.2f} |")
     return "\n".join(lines) + "\n"
 
 
@@ -126,14 +154,17 @@ def main():
     parser.add_argument("--seconds", type=float, default=1.0, help="of one processor, for each knob")
     parser.add_argument("--reference-seconds", type=float, default=60.0)
     parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--only", choices=("plots", "targets"))
+    parser.add_argument("--only", choices=("plots", "targets", "adaptive", "bounds"))
+    parser.add_argument("--json", type=Path, nargs="+", default=[], help="what bench_adaptive has printed; with --only")
+    parser.add_argument("--target-size", default="32x32")
+    parser.add_argument("--adaptive-size", default="192x120")
+    parser.add_argument("--bounds-size", default="160x100")
     options = parser.parse_args()
-    readme = ROOT / "README.md"
-    if options.only in (None, "plots"):
-        content = plots(options)  # before the README is read: it may take long
-        readme.write_text(put(readme.read_text(), "plots", content))
-    if options.only in (None, "targets"):
-        print(targets(options))
+    readme, module = ROOT / "README.md", ROOT / "renderer/accuracy/README.md"
+    for name, make, file in (("plots", plots, readme), ("targets", targets, readme), ("adaptive", adaptive, readme), ("bounds", bounds, module)):
+        if options.only in (None, name):
+            content = make(options)  # before the file is read: it may take long
+            file.write_text(put(file.read_text(), name, content))
 
 
 if __name__ == "__main__":

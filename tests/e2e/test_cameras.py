@@ -74,6 +74,7 @@ def test_what_cannot_be_is_refused_with_its_place(api):
                           ("/lens/focus_distance", {"lens": {"radius": 1}}),
                           ("/crop/x", {"crop": {"x": 1, "y": 0, "full_width": 32, "full_height": 32}}),
                           ("/filter", {"filter": "blackman_harris", "pixel_mode": "centre"}),
+                          ("/texture_filter", {"texture_filter": "best"}),
                           ("/emitter_choice", {"emitter_choice": "best"})]:
         answer = api.submit(scene, expect=(400, 422), width=32, height=32, stop={"samples": 1}, **fields)
         assert where in answer.text, answer.text

@@ -45,7 +45,7 @@ def companions(path: Path) -> dict:
 def mtl_pictures(library: Path) -> list:
     text = library.read_text("utf-8", "replace") if library.is_file() else ""
     return [line.split(None, 1)[1].strip().replace("\\", "/").removeprefix("./")
-            for line in text.splitlines() if line.strip().startswith(("map_Kd ", "map_Ke "))]
+            for line in text.splitlines() if line.strip().startswith(("map_Kd ", "map_Ke ", "map_d "))]
 
 
 def uris(document: bytes) -> list:

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include "raykiln/accel/kernels.hpp"
 #include "support/scene_pieces.hpp"
 
 namespace raykiln::render {
@@ -145,6 +146,45 @@ TEST_F(SameBytes, ForBruteForceAndOtherTrees) {
   expect_same(reference, render(*support::mixed_room().prepare(eager), settings, 8, {}), "deep tree");
   settings.traversal = Traversal::kBruteForce;
   expect_same(reference, render(*scene_, settings, 8, {}), "brute force");
+}
+
+/// Diffuse walls and boxes, lamps that face all ways, point lights, one of them with a range: all that is shaded
+/// several vertices at once. Open to one side, so that paths end early, too.
+std::shared_ptr<const PreparedScene> matte_hall() {
+  support::SceneBuilder b;
+  const auto white = b.material(support::diffuse_material(Rgb(0.8F, 0.7F, 0.6F)));
+  const auto blue = b.material(support::diffuse_material(Rgb(0.1F, 0.3F, 0.9F), Rgb(0.0F)));
+  const auto lamp = b.material(support::diffuse_material(Rgb(0.0F), {9.0F, 8.0F, 4.0F}));
+  const auto dim = b.material(support::diffuse_material(Rgb(0.4F), Rgb(0.2F)));
+  b.box({-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.5F}, white, true);
+  b.box({-0.6F, -1.0F, -0.4F}, {-0.1F, 0.1F, 0.2F}, blue);
+  b.box({0.2F, -1.0F, -0.1F}, {0.5F, -0.5F, 0.3F}, lamp);
+  b.box({0.6F, 0.2F, -0.7F}, {0.7F, 0.25F, -0.6F}, dim);
+  b.point_light({0.4F, 0.6F, 0.1F}, Rgb(0.3F, 0.2F, 0.1F));
+  b.point_light({-0.7F, 0.8F, 0.9F}, Rgb(0.2F));
+  b.scene().point_lights.back().range = 1.2F;
+  b.camera({0.0F, 0.0F, 1.4F}, {0.0F, -0.2F, -1.0F}, {0, 1, 0}, 1.2F);
+  return b.prepare();
+}
+
+// The kernels shade diffuse vertices several at once, the scalar walk's one at a time.
+TEST_F(SameBytes, ForEveryKernelAndChoiceOfEmitters) {
+  for (const auto& scene : {scene_, matte_hall()}) {
+    for (const Sampler sampler : {Sampler::kRandom, Sampler::kSobol}) {
+      for (const EmitterChoice choice : {EmitterChoice::kPower, EmitterChoice::kTree}) {
+        RenderSettings settings = small_settings();
+        settings.sampler = sampler;
+        settings.emitter_choice = choice;
+        settings.traversal = Traversal::kScalar;
+        const Film reference = render(*scene, settings, 8, {});
+        EXPECT_GT(reference.plane("beauty")[0], 0.0);
+        for (const Traversal kernel : {Traversal::kAvx2, Traversal::kAvx512}) {
+          settings.traversal = kernel;  // what the processor cannot run becomes the scalar one
+          expect_same(reference, render(*scene, settings, 8, {2, 9, 1}), std::string(name(kernel)));
+        }
+      }
+    }
+  }
 }
 
 TEST_F(SameBytes, WithBranches) {

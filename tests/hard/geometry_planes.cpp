@@ -134,7 +134,7 @@ TEST(K01_CoplanarWalls, HundredByHundredQuads) {
   TestRandom random(101);
   Tally tally;
   for (std::uint64_t i = 0; i < trials(4, 40); ++i) {
-    tally += rays_at_fine_wall(*tree, excerpts, 250'000, random);
+    tally += rays_at_fine_wall(*tree, excerpts, all_trials(250'000), random);
   }
   row.never("misses", tally.rays - tally.hits, tally.rays);
   row.never("differences from brute force", tally.mismatches, tally.compared);

@@ -37,8 +37,8 @@ class Row:
     options: dict = field(default_factory=dict)  # of raykiln's job
     facets: str = "stock"      # stock: Mitsuba's own; gltf: gltf_facets.py; check: that against its own
     judged: bool = True
-    known_bias: float = 0.0    # share of the mean that raykiln's documentation gives away
     pixel_tolerance: float = 0.0  # share of a pixel that the conversion of the scene costs
+    roulette_from: int = 5     # bounces before Mitsuba's, which ends 5 % of the paths even where nothing is lost
     samples: int = 48          # of a pixel in each render
     size: tuple = (64, 64)
 
@@ -51,16 +51,19 @@ ROWS = [
     Row("metal_check", "Mitsuba's plug-in against its `principled`, roughness 0.6", scenes.metal(0.6), facets="check"),
     Row("metal_stock", "not judged: metal, roughness 0.6, against `principled`", scenes.metal(0.6), judged=False),
     Row("plastic", "diffuse base below facets, roughness 0.4", scenes.plastic, facets="gltf"),
-    Row("glass_smooth", "body of glass", scenes.glass_body(0)),
+    # Light that enters at the rim of a ball stays for hundreds of bounces: by such a roulette a few pixels hold it, with
+    # weights of 1 / 0.95^n, and the rest are too dark.
+    Row("glass_smooth", "body of glass", scenes.glass_body(0), roulette_from=1000),
     Row("glass_absorbing", "absorbing body of glass", scenes.glass_body(0, [0.9, 0.4, 0.2])),
-    Row("glass_rough", "rough glass, roughness 0.4", scenes.glass_body(0.4), facets="gltf", known_bias=0.04),
+    Row("glass_rough", "rough glass, roughness 0.4", scenes.glass_body(0.4), facets="gltf"),
     Row("glass_check", "Mitsuba's plug-in against its `roughdielectric`", scenes.glass_body(0.4), facets="check"),
     Row("textured", "textured glTF: colour and emission, turned and scaled", scenes.textured),
     # Mitsuba blends across the borders of the repeated texels: up to 0.15 % where a border crosses a pixel.
     Row("environment", "environment light", scenes.environment, pixel_tolerance=0.002),
     Row("emitters", "1000 emitters", scenes.many_emitters),
     Row("punctual", "point and directional light", scenes.punctual),
-    Row("half_covered", "a body that covers 0.4", scenes.half_covered),
+    # Mitsuba lights what is behind the veil by chance hits alone: with few samples no mean of 8 is normal.
+    Row("half_covered", "a body that covers 0.4", scenes.half_covered, samples=256),
     Row("foliage", "alpha-masked foliage", scenes.foliage),
     Row("thin_lens", "thin lens", scenes.thin_lens),
 ]
@@ -89,6 +92,7 @@ def theirs(row, folder, variant, facets, first_seed, renders) -> np.ndarray:
     else:
         import mitsuba_from_gltf
         description = mitsuba_from_gltf.convert(folder, scratch, row.size, facets)
+    description["integrator"]["rr_depth"] = row.roulette_from
     scene = mi.load_dict(description)
     return np.array([np.array(mi.render(scene, spp=row.samples, seed=first_seed + k)).astype(float)
                      for k in range(renders)])
@@ -123,7 +127,7 @@ def judge(row, daemon, renders) -> dict:
         return result | {"missing": str(missing), "seconds": time.monotonic() - start}
     worst = int(np.argmax(np.abs(verdict.difference / verdict.sigma)))
     return result | {
-        "passed": verdict.passes(row.known_bias), "exact": verdict.passes(), "accepted": verdict.accepted, "block": verdict.worst_block,
+        "passed": verdict.passes(), "accepted": verdict.accepted, "block": verdict.worst_block,
         "block_limit": verdict.block_limit, "mean_z": float(verdict.mean_z[worst]),
         "difference": float(verdict.difference[worst]), "sigma": float(verdict.sigma[worst]),
         "seconds": time.monotonic() - start}
@@ -132,7 +136,7 @@ def judge(row, daemon, renders) -> dict:
 def line(result) -> str:
     if "missing" in result:
         return f"| {result['title']} | | | | | missing; {result['missing']} |"
-    word = "equal" if result["exact"] else "within the stated bias" if result["passed"] else "DIFFERENT"
+    word = "equal" if result["passed"] else "DIFFERENT"
     word = word if result["judged"] else "differs as it must"
     return (f"| {result['title']} | {100 * result['accepted']:.2f} | {result['mean_z']:+.2f} | "
             f"{100 * result['difference']:+.2f} +- {100 * result['sigma']:.2f} | "

@@ -169,7 +169,7 @@ def punctual(folder: Path):
 
 
 def half_covered(folder: Path):
-    material = matte(0.2, 0.6, 0.2, alphaMode="BLEND")
+    material = matte(0.2, 0.6, 0.2, alphaMode="BLEND", doubleSided=True)  # its inside shows
     material["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.4
     on_table(folder, "veil", material)
 

@@ -31,9 +31,8 @@ class Verdict:
     def pixels_pass(self) -> bool:
         return self.accepted >= ACCEPTED_PIXELS
 
-    def passes(self, known_bias=0.0) -> bool:
-        """`known_bias`: a stated difference of models, as a share of the mean."""
-        means = np.abs(self.difference) <= MEAN_SIGMAS * self.sigma + known_bias
+    def passes(self) -> bool:
+        means = np.abs(self.difference) <= MEAN_SIGMAS * self.sigma
         return bool(self.pixels_pass and means.all())
 
 

@@ -79,7 +79,7 @@ inline Bsdf bsdf_at(const Material& material, const Vec3f& wo, const BsdfModel& 
   return make_bsdf(material, kUp, kUp, wo, model);
 }
 
-/// Opaque with both layers, a rough metal, a sheet and a body of glass.
+/// Opaque with both layers, a rough metal, a sheet and a body of glass, a leaf and one that is clear in part.
 inline std::vector<NamedMaterial> facet_materials() {
   Material plastic;
   plastic.model = SurfaceModel::kMicrofacet;
@@ -96,7 +96,12 @@ inline std::vector<NamedMaterial> facet_materials() {
   Material body = sheet;
   body.transparent = 1.0F;
   body.facets.thin = false;
-  return {{"plastic", plastic}, {"metal", metal}, {"sheet", sheet}, {"body", body}};
+  Material leaf = plastic;
+  leaf.facets.diffuse_through = {0.3F, 0.5F, 0.8F};
+  Material clear_leaf = leaf;
+  clear_leaf.transparent = 0.3F;
+  return {{"plastic", plastic}, {"metal", metal}, {"sheet", sheet}, {"body", body},
+          {"leaf", leaf}, {"clear leaf", clear_leaf}};
 }
 
 inline MicrofacetBsdf facets_at(Material material, double roughness, const Vec3f& wo,

@@ -11,7 +11,7 @@ import shutil
 import signal
 import sys
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Callable
 
@@ -43,6 +43,7 @@ class Suite:
     needs: list = field(default_factory=list)
     full_only: bool = False
     may_be_skipped: bool = False  # wants what only a network has; says so when it is skipped
+    part_of: str = ""  # the suite of --full that runs all of this one again, so that it can be left out
 
 
 class BuildFailed(Exception):
@@ -152,19 +153,26 @@ def peer() -> Tally:
     return tallies.from_last_line(log_of("peer"), code)
 
 
+def unit(leave_out=()) -> Tally:
+    return ctest("unit", BUILD / "test", extra=leave_out)
+
+
 def long_statistics() -> Tally:
-    return ctest("long", BUILD / "test", {"RAYKILN_LONG": "1"}, ["-L", "golden|property|hard"])
+    return ctest("long", BUILD / "test", {"RAYKILN_LONG": "1"}, ["-L", LONG_LABELS])
 
 
+LONG_LABELS = "golden|property|hard"
 NOTHING_TO_ASK = 77  # tests/peer/run, where the package indexes have no other program
 NOT_SIZE = ["-m", "not size"]
-NOT_MEASURED = ["-m", "not size and not measured"]
-THREADED = ["-m", "not size and not measured and not one_thread"]
+# Without tests that state a time, files of tests may run side by side.
+SIDE_BY_SIDE = ["-n", JOBS, "--dist", "loadfile"]
+NOT_MEASURED = ["-m", "not size and not measured", *SIDE_BY_SIDE]
+THREADED = ["-m", "not size and not measured and not one_thread", *SIDE_BY_SIDE]
 
 SUITES = [
     Suite("hygiene", "what the tree may hold and which module may use what",
           lambda: pytest("hygiene", "tests/hygiene/test_tree.py")),
-    Suite("unit", "every C++ test, through ctest", lambda: ctest("unit", BUILD / "test"), ["test"]),
+    Suite("unit", "every C++ test, through ctest (--full: those of 'long' only there)", unit, ["test"]),
     Suite("packaging", "installed programs start with the libraries of run.txt",
           lambda: pytest("packaging", "tests/hygiene/test_packaging.py"), ["web", "test"]),
     Suite("e2e", "the daemon and the CLI from outside", lambda: pytest("e2e", "tests/e2e", *NOT_SIZE),
@@ -172,7 +180,8 @@ SUITES = [
     Suite("vitest", "the page's own modules", vitest, ["web"]),
     Suite("page", "the page in headless Chromium", page, ["web", "test"]),
     Suite("readers", "renderer/io and server/jobs under ASan and UBSan",
-          lambda: ctest_folders("readers", "asan-ubsan", READERS, SANITIZERS), ["readers"]),
+          lambda: ctest_folders("readers", "asan-ubsan", READERS, SANITIZERS), ["readers"],
+          part_of="asan"),
     Suite("asan", "every C++ test under ASan and UBSan",
           lambda: ctest("asan", BUILD / "asan-ubsan", SANITIZERS), ["asan-ubsan"], True),
     Suite("asan-e2e", "the daemon from outside, under ASan and UBSan",
@@ -252,6 +261,16 @@ def parse(arguments):
     return options
 
 
+def chosen_suites(options):
+    """What --full runs in a longer form it does not run in the short one as well."""
+    if options.only:
+        return [s for s in SUITES if s.name in options.only]
+    if not options.full:
+        return [s for s in SUITES if not s.full_only]
+    once = [s for s in SUITES if not s.part_of]
+    return [replace(s, run=lambda: unit(["-LE", LONG_LABELS])) if s.name == "unit" else s for s in once]
+
+
 def main(arguments) -> int:
     options = parse(arguments)
     if options.list:
@@ -262,8 +281,7 @@ def main(arguments) -> int:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     shutil.rmtree(LOGS, ignore_errors=True)
     LOGS.mkdir(parents=True)
-    chosen = [s for s in SUITES if s.name in options.only] if options.only else \
-        [s for s in SUITES if options.full or not s.full_only]
+    chosen = chosen_suites(options)
     builds, started = Builds(), time.monotonic()
     results = [(suite, run_suite(suite, builds)) for suite in chosen]
     return report(results, builds, started)

@@ -12,6 +12,8 @@ export interface OwnCamera {
   look_at: Vec3;
   up?: Vec3;
   fov_deg?: number;
+  /** Metres from edge to edge; in place of the angle of an orthographic camera. */
+  view_height?: number;
 }
 
 export interface JobRequest {
@@ -30,10 +32,15 @@ export interface JobRequest {
   direction_sampling?: string;
   emitter_sampling?: boolean;
   emitter_choice?: string;
+  texture_filter?: string;
   filter?: string;
   sampler?: string;
   adaptive?: boolean;
   effects?: EffectChoice;
+  /** Made beside the picture. */
+  layers?: string[];
+  lens?: { radius: number; focus_distance?: number };
+  crop?: { x: number; y: number; full_width: number; full_height: number };
   tile?: number;
   priority?: number;
 }
@@ -113,9 +120,18 @@ export interface JobAccuracy {
   tile_samples: number[] | null;
 }
 
-/** What the stage shows: the picture or one of its maps. */
+/** What the stage can show of every job: the picture or one of its maps. */
 export const kLayers = ["beauty", "error", "samples", "seconds"] as const;
-export type Layer = (typeof kLayers)[number];
+/** Only of jobs that ask for them. */
+export const kAskedLayers = [
+  "albedo", "normal", "depth", "object_id", "material_id", "emission", "direct", "indirect",
+] as const;
+export type AskedLayer = (typeof kAskedLayers)[number];
+export type Layer = (typeof kLayers)[number] | AskedLayer;
+
+/** What there is to show of a job. */
+export const layers_of = (request: JobRequest): Layer[] =>
+  [...kLayers, ...kAskedLayers.filter((layer) => request.layers?.includes(layer))];
 
 /** What the colours of a map stand for. */
 export interface MapRange {

@@ -1,14 +1,14 @@
 // The job form: its fields, their defaults, and the way between the typed text
 // and a job request. Errors are placed at fields by their JSON pointer.
 
-import type { EffectChoice, Job, JobRequest, OwnCamera, Vec3 } from "./contract";
+import { kAskedLayers, type EffectChoice, type Job, type JobRequest, type OwnCamera, type Vec3 } from "./contract";
 import type { FieldProblem } from "./problem";
 
 export type FormKey =
-  | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg"
+  | "scene" | "camera" | "eye" | "look_at" | "up" | "fov_deg" | "view_height" | "lens" | "crop" | "layers"
   | "width" | "height" | "samples" | "error" | "seconds" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
-  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | "emitter_choice" | "filter" | "sampler" | "adaptive"
+  | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | "emitter_choice" | "texture_filter" | "filter" | "sampler" | "adaptive"
   | "effects" | "without" | OverrideKey;
 
 /** Switches against the named light model; empty: as the model has it. */
@@ -27,15 +27,16 @@ export const kOwnCamera = "own";
 const kMostSamples = 1048576;
 
 export const kDefaultForm: FormValues = {
-  scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40",
+  scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40", view_height: "",
+  lens: "", crop: "", layers: "",
   width: "640", height: "480", samples: "64", error: "", seconds: "", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
-  light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true", emitter_choice: "auto", filter: "box", sampler: "random", adaptive: "false",
+  light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true", emitter_choice: "auto", texture_filter: "exact", filter: "box", sampler: "random", adaptive: "false",
   effects: "auto", without: "",
   phong: "", fresnel: "", radiance_scaling: "", diffuse_sampling: "", roulette: "",
 };
 
-type Kind = "scene" | "camera" | "integer" | "number" | "vector" | "text" | "choice" | "effects";
+type Kind = "scene" | "camera" | "integer" | "number" | "vector" | "text" | "choice" | "effects" | "layers";
 
 export interface FieldSpec {
   key: FormKey;
@@ -49,6 +50,8 @@ export interface FieldSpec {
   max?: number;
   /** May be left empty: the server then chooses. */
   optional?: boolean;
+  /** Numbers of a vector, if not 3, as an example. */
+  example?: string;
   choices?: readonly (readonly [value: string, label: string])[];
 }
 
@@ -62,6 +65,7 @@ export const kFields: readonly FieldSpec[] = [
   { key: "look_at", pointer: "/camera/look_at", label: "Look at", hint: "x y z, metres", kind: "vector", group: "camera" },
   { key: "up", pointer: "/camera/up", label: "Up", hint: "x y z", kind: "vector", group: "camera" },
   { key: "fov_deg", pointer: "/camera/fov_deg", label: "Field of view", hint: "degrees", kind: "number", group: "camera" },
+  { key: "view_height", pointer: "/camera/view_height", label: "View height", hint: "metres; makes it orthographic", kind: "number", group: "camera", min: 1e-9, max: 1e15, optional: true },
   { key: "width", pointer: "/width", label: "Width", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
   { key: "height", pointer: "/height", label: "Height", hint: "pixels", kind: "integer", group: "main", min: 1, max: 16384 },
   { key: "samples", pointer: "/stop/samples", label: "Samples", hint: "per pixel, at most", kind: "integer", group: "main", min: 1, max: kMostSamples, optional: true },
@@ -70,6 +74,9 @@ export const kFields: readonly FieldSpec[] = [
   { key: "max_depth", pointer: "/max_depth", label: "Max depth", hint: "reflections; empty: by the light model", kind: "integer", group: "main", min: 0, max: 1024, optional: true },
   { key: "light_model", pointer: "/light_model", label: "Light model", hint: "", kind: "choice", group: "main",
     choices: [["physical", "Physical"], ["seed", "Seed (as first written)"]] },
+  { key: "lens", pointer: "/lens", label: "Lens", hint: "radius and focus distance, metres", kind: "vector", group: "more", optional: true, example: "0.05 2" },
+  { key: "crop", pointer: "/crop", label: "Window of", hint: "left and top, width and height of the whole picture", kind: "vector", group: "more", optional: true, example: "640 0 1920 1080" },
+  { key: "layers", pointer: "/layers", label: "Layers", hint: "", kind: "layers", group: "more" },
   { key: "name", pointer: "/name", label: "Name", hint: "for the list; optional", kind: "text", group: "more" },
   { key: "seed", pointer: "/seed", label: "Seed", hint: "of the noise", kind: "integer", group: "more", min: 0 },
   { key: "priority", pointer: "/priority", label: "Priority", hint: "1 to 100", kind: "integer", group: "more", min: 1, max: 100 },
@@ -83,6 +90,8 @@ export const kFields: readonly FieldSpec[] = [
     choices: [["true", "On"], ["false", "Off"]] },
   { key: "emitter_choice", pointer: "/emitter_choice", label: "Emitters chosen", hint: "", kind: "choice", group: "more",
     choices: [["auto", "By their number"], ["power", "By power"], ["tree", "From a tree"]] },
+  { key: "texture_filter", pointer: "/texture_filter", label: "Textures read", hint: "", kind: "choice", group: "more",
+    choices: [["exact", "At the point"], ["footprint", "Over the pixel (less noise, biased)"]] },
   { key: "filter", pointer: "/filter", label: "Pixel filter", hint: "", kind: "choice", group: "more",
     choices: [["box", "Box"], ["blackman_harris", "Blackman-Harris (softer)"]] },
   { key: "sampler", pointer: "/sampler", label: "Sampler", hint: "", kind: "choice", group: "more",
@@ -104,18 +113,24 @@ export const kFields: readonly FieldSpec[] = [
     choices: kSwitch },
 ];
 
-function parse_vector(text: string): Vec3 | null {
+function parse_numbers(text: string, how_many: number): number[] | null {
   const parts = text.trim().split(/[\s,;]+/).map(Number);
-  const [x, y, z] = parts;
-  if (parts.length !== 3 || x === undefined || y === undefined || z === undefined) return null;
-  return parts.every(Number.isFinite) ? [x, y, z] : null;
+  return parts.length === how_many && parts.every(Number.isFinite) ? parts : null;
+}
+
+const parse_vector = (text: string): Vec3 | null => parse_numbers(text, 3) as Vec3 | null;
+
+const kCounts: Record<number, string> = { 2: "two", 3: "three", 4: "four" };
+function vector_fault(example: string, text: string): string {
+  const how_many = example.split(" ").length;
+  return parse_numbers(text, how_many) ? "" : `Enter ${kCounts[how_many]} numbers, for example ${example}.`;
 }
 
 /** The reason why `text` cannot be sent as this field's value; empty when it can. */
 function fault(spec: FieldSpec, text: string): string {
   if (spec.optional && text.trim() === "") return "";
   if (spec.kind === "vector") {
-    return parse_vector(text) ? "" : "Enter three numbers, for example 0 1 4.";
+    return vector_fault(spec.example ?? "0 1 4", text);
   }
   if (spec.kind === "number") {
     if (text.trim() === "" || !Number.isFinite(Number(text))) return "Enter a number.";
@@ -177,12 +192,25 @@ export function to_request(values: FormValues): JobRequest {
     direction_sampling: values.direction_sampling,
     emitter_sampling: values.emitter_sampling === "true",
     emitter_choice: values.emitter_choice,
+    texture_filter: values.texture_filter,
     filter: values.filter,
     sampler: values.sampler,
     ...(values.adaptive === "true" ? { adaptive: true } : {}),
     effects: values.effects === kWithout ? { without: names(values.without) } : values.effects,
+    ...lens_and_crop(values),
+    ...(values.layers === "" ? {} : { layers: kAskedLayers.filter((layer) => is_chosen(values.layers, layer)) }),
     tile: number("tile"),
     priority: number("priority"),
+  };
+}
+
+function lens_and_crop(values: FormValues): Pick<JobRequest, "lens" | "crop"> {
+  const [radius, focus_distance] = parse_numbers(values.lens, 2) ?? [];
+  const [x, y, full_width, full_height] = parse_numbers(values.crop, 4) ?? [];
+  const crop = x !== undefined && y !== undefined && full_width !== undefined && full_height !== undefined;
+  return {
+    ...(radius !== undefined && focus_distance !== undefined ? { lens: { radius, focus_distance } } : {}),
+    ...(crop ? { crop: { x, y, full_width, full_height } } : {}),
   };
 }
 
@@ -211,7 +239,7 @@ function own_camera(values: FormValues): OwnCamera {
   const vector = (key: FormKey): Vec3 => parse_vector(values[key]) ?? [0, 0, 0];
   return {
     eye: vector("eye"), look_at: vector("look_at"), up: vector("up"),
-    fov_deg: Number(values.fov_deg),
+    ...(values.view_height.trim() === "" ? { fov_deg: Number(values.fov_deg) } : { view_height: Number(values.view_height) }),
   };
 }
 
@@ -221,7 +249,7 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   const values = { ...kDefaultForm, scene: request.scene, name: request.name ?? job.name };
   const plain: FormKey[] = [
     "width", "height", "max_depth", "branches", "seed", "tile", "priority",
-    "light_model", "pixel_mode", "direction_sampling", "emitter_sampling", "emitter_choice", "filter", "sampler", "adaptive",
+    "light_model", "pixel_mode", "direction_sampling", "emitter_sampling", "emitter_choice", "texture_filter", "filter", "sampler", "adaptive",
   ];
   const bag = request as unknown as Record<string, unknown>;
   for (const key of plain) if (bag[key] !== undefined) values[key] = String(bag[key]);
@@ -238,6 +266,10 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   const effects = request.effects ?? "auto";
   values.effects = typeof effects === "string" ? effects : kWithout;
   values.without = typeof effects === "string" ? "" : effects.without.join(",");
+  values.layers = kAskedLayers.filter((layer) => request.layers?.includes(layer)).join(",");
+  const { lens, crop } = request;
+  if (lens) values.lens = `${lens.radius} ${lens.focus_distance ?? 1}`;
+  if (crop) values.crop = `${crop.x} ${crop.y} ${crop.full_width} ${crop.full_height}`;
   const camera = request.camera;
   if (typeof camera === "number") values.camera = String(camera);
   if (typeof camera === "string") {
@@ -254,6 +286,7 @@ function from_own_camera(camera: OwnCamera): Partial<FormValues> {
     look_at: camera.look_at.join(" "),
     up: (camera.up ?? [0, 1, 0]).join(" "),
     fov_deg: String(camera.fov_deg ?? 40),
+    view_height: camera.view_height === undefined ? "" : String(camera.view_height),
   };
 }
 

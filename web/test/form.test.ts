@@ -54,6 +54,23 @@ describe("to_request and from_job", () => {
     expect(from_job(job({ request }), [])).toEqual({ ...values, eye: "1 2 3.5" });
   });
 
+  test("lens, window, view height and layers survive the round", () => {
+    const values = filled({
+      camera: kOwnCamera, view_height: "2.5", lens: "0.05 2", crop: "640 0 1920 1080", layers: "albedo,depth,direct",
+    });
+    const request = to_request(values);
+    expect(request.camera).toEqual({ eye: [0, 0, 5], look_at: [0, 0, 0], up: [0, 1, 0], view_height: 2.5 });
+    expect(request.lens).toEqual({ radius: 0.05, focus_distance: 2 });
+    expect(request.crop).toEqual({ x: 640, y: 0, full_width: 1920, full_height: 1080 });
+    expect(request.layers).toEqual(["albedo", "depth", "direct"]);
+    expect(from_job(job({ request }), [])).toEqual(values);
+    expect(Object.keys(to_request(filled()))).not.toContain("lens");
+    expect(check_form(filled({ lens: "0.1" }))).toEqual({ lens: "Enter two numbers, for example 0.05 2." });
+    expect(Object.keys(check_form(filled({ crop: "1 2 3", camera: kOwnCamera, view_height: "0" })))).toEqual(["view_height", "crop"]);
+    expect(place_errors([{ pointer: "/crop/x", message: "leaves" }, { pointer: "/layers/0", message: "none" }]))
+      .toEqual({ crop: "leaves", layers: "none" });
+  });
+
   test("stops by error and time survive the round, typed in percent", () => {
     const values = filled({ samples: "", error: "2.5", seconds: "60" });
     const request = to_request(values);

@@ -4,6 +4,8 @@ import { backoff_ms, kLongestDelayMs } from "../src/backoff";
 import { shortcut } from "../src/keys";
 import { explain, parse_problem, unreachable } from "../src/problem";
 import { parse_route, route_path } from "../src/route";
+import { layers_of } from "../src/contract";
+import { legend } from "../src/view/layers";
 import { warning_lines } from "../src/view/warnings";
 import { job } from "./sample";
 
@@ -82,4 +84,14 @@ test("equal warnings are counted, many are cut", () => {
   const warn = (message: string, where = "", count?: number) => ({ code: "c", message, where, ...(count ? { count } : {}) });
   expect(warning_lines([warn("a", "x:1"), warn("a", "x:9"), warn("b", "", 4)])).toEqual(["a (x:1 and elsewhere) × 2", "b × 4"]);
   expect(warning_lines(Array.from({ length: 20 }, (_, index) => warn(`w${index}`))).length).toBe(7);
+});
+
+test("the stage offers what a job has, and says what it shows", () => {
+  const request = job().request;
+  expect(layers_of(request)).toEqual(["beauty", "error", "samples", "seconds"]);
+  expect(layers_of({ ...request, layers: ["direct", "depth", "new"] })).toEqual(["beauty", "error", "samples", "seconds", "depth", "direct"]);
+  expect(legend("depth", { low: 0, high: 20, scale: "linear" })).toBe("0 to 20 m");
+  expect(legend("error", { low: 0.001, high: 1, scale: "log" })).toBe("0.001 to 1 radiance, logarithmic");
+  expect(legend("beauty", null)).toBe("");
+  expect(legend("normal", null)).not.toBe("");
 });

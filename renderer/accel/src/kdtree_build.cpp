@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
+#include <string>
 
 #include "build_context.hpp"
 #include "raykiln/accel/build_limits.hpp"
@@ -34,19 +35,36 @@ std::uint64_t size_in_bytes(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
-// References a triangle that fit into max_bytes whatever the mesh is: every reference may
-// stand in a cell and in the part that is split off, and end up alone in a leaf with a block, a
-// node above it and both before they had their places.
-double affordable_duplication(const BuildParams& params, std::size_t n, std::uint64_t mesh_bytes,
-                              std::uint64_t max_bytes) {
-  if (max_bytes == 0 || n == 0) return params.max_duplication;
+std::uint64_t mesh_bytes(const TriangleView& mesh) {
+  return mesh.positions.size_bytes() + mesh.triangles.size_bytes();
+}
+
+// What a reference may take: it may stand in a cell and in the part that is split off, and end up
+// alone in a leaf with a block, a node above it and both before they had their places.
+std::uint64_t bytes_of_reference(const BuildParams& params) {
   const std::size_t block =
       params.leaf_width == 16 ? sizeof(LeafBlock<16>) : sizeof(LeafBlock<8>);
-  const std::size_t of_one = 2 * sizeof(Reference) + block + sizeof(std::uint32_t) +
-                             2 * (sizeof(KdNode) + sizeof(BuildNode));
-  const std::uint64_t left = max_bytes - std::min(max_bytes, mesh_bytes);
-  const double references = static_cast<double>(left) / static_cast<double>(of_one);
+  return 2 * sizeof(Reference) + block + sizeof(std::uint32_t) +
+         2 * (sizeof(KdNode) + sizeof(BuildNode));
+}
+
+// References a triangle that fit into max_bytes whatever the mesh is.
+double affordable_duplication(const BuildParams& params, const TriangleView& mesh, std::size_t n,
+                              std::uint64_t max_bytes) {
+  if (max_bytes == 0 || n == 0) return params.max_duplication;
+  const std::uint64_t left = max_bytes - std::min(max_bytes, mesh_bytes(mesh));
+  const double references =
+      static_cast<double>(left) / static_cast<double>(bytes_of_reference(params));
   return std::clamp(references / static_cast<double>(n), 1.0, params.max_duplication);
+}
+
+void refuse_too_little(const TriangleView& mesh, const BuildParams& params,
+                       const BuildLimits& limits) {
+  const std::uint64_t least = least_bytes(mesh, params);
+  if (limits.max_bytes == 0 || limits.max_bytes >= least) return;
+  throw std::length_error("kd-tree: " + std::to_string(mesh.triangles.size()) +
+                          " triangles may need " + std::to_string(least) +
+                          " bytes, and the limit is " + std::to_string(limits.max_bytes));
 }
 
 }  // namespace
@@ -63,6 +81,7 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
     throw std::invalid_argument("kd-tree: one opaque flag a triangle, or none");
   }
   BuildContext context(mesh, params, runner);
+  refuse_too_little(mesh, context.params, limits);
   RootInput root = make_root(context);
   if (context.stopped()) return nullptr;
 
@@ -72,9 +91,7 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
   tree->stats.triangles = mesh.triangles.size();
   tree->stats.dropped_degenerate = root.dropped_degenerate;
   const std::size_t n = root.subtree.size();
-  const std::uint64_t mesh_bytes = mesh.positions.size_bytes() + mesh.triangles.size_bytes();
-  const double duplication =
-      affordable_duplication(context.params, n, mesh_bytes, limits.max_bytes);
+  const double duplication = affordable_duplication(context.params, mesh, n, limits.max_bytes);
   root.subtree.budget = static_cast<std::uint64_t>((duplication - 1.0) * static_cast<double>(n));
   tree->stats.leaf_cost = context.params.k_i * static_cast<double>(n);
   const int cap = depth_cap(context.params.max_depth, n);
@@ -87,6 +104,10 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
   prefer_large_pages(*tree);
   runner.progress(1.0);
   return tree;
+}
+
+std::uint64_t least_bytes(const TriangleView& mesh, const BuildParams& params) {
+  return mesh_bytes(mesh) + mesh.triangles.size() * bytes_of_reference(params);
 }
 
 const BuildStats& build_stats(const KdTree& tree) { return tree.stats; }

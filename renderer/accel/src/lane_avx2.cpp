@@ -8,7 +8,7 @@ namespace {
 
 template <int kLeafWidth, bool kAnyHit>
 void walk(const LaneQuery& query, LaneCounts& counts) {
-  LaneWalk<Lanes8, Lanes8, Lanes8, kLeafWidth, kAnyHit, 4> lanes(query, counts);
+  LaneWalk<Lanes8, Lanes8, Lanes8, Doubles4, kLeafWidth, kAnyHit, 4> lanes(query, counts);
   lanes.run();
 }
 

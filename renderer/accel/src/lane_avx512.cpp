@@ -11,13 +11,13 @@ constexpr std::size_t kGroups = 4;
 
 template <bool kAnyHit>
 void walk8(const LaneQuery& query, LaneCounts& counts) {
-  LaneWalk<Lanes16, Lanes8, Lanes8Twice, 8, kAnyHit, kGroups> lanes(query, counts);
+  LaneWalk<Lanes16, Lanes8, Lanes8Twice, Doubles8, 8, kAnyHit, kGroups> lanes(query, counts);
   lanes.run();
 }
 
 template <bool kAnyHit>
 void walk16(const LaneQuery& query, LaneCounts& counts) {
-  LaneWalk<Lanes16, Lanes16, Lanes16, 16, kAnyHit, kGroups> lanes(query, counts);
+  LaneWalk<Lanes16, Lanes16, Lanes16, Doubles8, 16, kAnyHit, kGroups> lanes(query, counts);
   lanes.run();
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lane_exact.hpp"
 #include "lane_filter.hpp"
 #include "lane_query.hpp"
 
@@ -21,7 +22,9 @@ struct alignas(64) LeafRays {
   float sx[kW], sy[kW], t_min[kW], t_max[kW];  ///< t_max: not beyond the best hit so far
   float limit[kW];          ///< cells entered beyond need no visit
   std::uint32_t known[kW];  ///< a triangle that need not be decided again
-  LaneShear shear[kW];
+  // For the test in double, see shear_ray.
+  double shear_x[kW], shear_y[kW], inv_dz[kW];
+  std::uint32_t main_axis[kW];
 };
 
 /// Lanes that hold the same triangle: the first one of a row.
@@ -31,11 +34,12 @@ struct Repeated : V {
 };
 
 /// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth. Twice: lanes of two
-/// neighbouring blocks, or B again.
-template <class V, class B, class Twice, int kLeafWidth, bool kAnyHit>
+/// neighbouring blocks, or B again. D: lanes of the test in double, dividing the others.
+template <class V, class B, class Twice, class D, int kLeafWidth, bool kAnyHit>
 class LeafVisit {
  public:
   using Rays = LeafRays<V::kWidth>;
+  static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
 
   LeafVisit(const LaneQuery& query, LaneCounts& counts) : query_(query), counts_(counts) {}
 
@@ -71,9 +75,9 @@ class LeafVisit {
     return false;
   }
 
-  /// The rays of `lanes`, all with the same main axis, the first of which is `index` + its lane.
-  /// A bit for each that is done.
-  std::uint32_t packet(Rays& rays, std::uint32_t lanes, std::size_t index, std::uint32_t place,
+  /// The rays of `lanes`, all with the same main axis. A bit for each that is done.
+  template <class Ready>
+  std::uint32_t packet(Ready& rays, std::uint32_t lanes, std::uint32_t place,
                        std::uint32_t count) const {
     const auto n = static_cast<std::uint32_t>(__builtin_popcount(lanes));
     const std::uint32_t tests =
@@ -82,27 +86,28 @@ class LeafVisit {
     if (n * tests < kTrianglesABlock * count) {
       for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-        if (one_ray(rays, lane, index + lane, place, count)) done |= 1U << lane;
+        if (one_ray(rays, lane, rays.index[lane], place, count)) done |= 1U << lane;
       }
       return done;
     }
-    const std::size_t axis = rays.shear[__builtin_ctz(lanes)].main_axis;
+    const std::size_t axis = rays.main_axis[__builtin_ctz(lanes)];
     for (std::uint32_t b = 0; b < count && lanes != done; ++b) {
       counts_.block_tests += static_cast<std::uint32_t>(__builtin_popcount(lanes & ~done));
-      done |= packet_block(rays, lanes & ~done, axis, index, place + b);
+      done |= packet_block(rays, lanes & ~done, axis, place + b);
     }
     return done;
   }
 
  private:
   static constexpr bool kTwice = Twice::kWidth == 2 * B::kWidth;
-  static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
   static constexpr std::size_t kIds = 9 * kLeafWidth;
+  static constexpr std::uint32_t kInDoubles = (1U << D::kWidth) - 1U;
   /// About so many lanes of a block hold a triangle.
   static constexpr std::uint32_t kTrianglesABlock = 3 * kLeafWidth / 4;
 
-  std::uint32_t packet_block(Rays& rays, std::uint32_t lanes, std::size_t axis,
-                             std::size_t index, std::uint32_t place) const {
+  template <class Ready>
+  std::uint32_t packet_block(Ready& rays, std::uint32_t lanes, std::size_t axis,
+                             std::uint32_t place) const {
     using R = Repeated<V>;
     const float* const block = query_.blocks + kBlockFloats * place;
     const auto* const ids = reinterpret_cast<const std::uint32_t*>(block + kIds);
@@ -112,20 +117,99 @@ class LeafVisit {
       std::uint32_t found = may_be_hit<R, kLeafWidth>(ray, block + i) & lanes & ~done;
       if (found == 0) continue;
       found &= ~V::bits(V::eq(V::load(rays.known), V::set1(ids[i])));
-      for (std::uint32_t rest = found; rest != 0; rest &= rest - 1) {
-        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-        if (decide(rays, lane, index + lane, place, 1U << i)) done |= 1U << lane;
-      }
+      done |= decide_rays(rays, found, axis, place, i);
       ray.t_max = V::load(rays.t_max);
     }
     return done;
   }
 
-  // The last word on the candidates of a block. True when the ray is done.
-  bool decide(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t block,
+  // The last word on triangle i of a block for the rays of `found`. A bit for each that is done.
+  template <class Ready>
+  [[gnu::noinline]] std::uint32_t decide_rays(Ready& rays, std::uint32_t found, std::size_t z, std::uint32_t place,
+                            std::uint32_t i) const {
+    const std::size_t axes[3] = {next(z), next(next(z)), z};
+    const float* const triangle = query_.blocks + kBlockFloats * place + i;
+    const std::uint32_t id = id_of(triangle);
+    std::uint32_t done = 0;
+    ExactHits<D> exact;
+    for (std::uint32_t from = 0; from < V::kWidth; from += D::kWidth) {
+      const std::uint32_t asked = found >> from & kInDoubles;
+      if (asked == 0) continue;
+      counts_.exact_tests += static_cast<std::uint32_t>(__builtin_popcount(asked));
+      const ExactRay<D> ray = {D::load(rays.o[axes[0]] + from), D::load(rays.o[axes[1]] + from),
+                               D::load(rays.o[z] + from),       D::load(rays.shear_x + from),
+                               D::load(rays.shear_y + from),    D::load(rays.inv_dz + from),
+                               D::load(rays.t_min + from),      D::load(rays.t_max + from)};
+      test_exactly<D>(ray, [&](std::size_t c, std::size_t k) {
+        return D::set1(static_cast<double>(triangle[(3 * c + axes[k]) * kLeafWidth]));
+      }, exact);
+      for (std::uint32_t rest = asked & (exact.hit | exact.doubt); rest != 0; rest &= rest - 1) {
+        const auto k = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        const std::uint32_t lane = from + k;
+        const bool ends = (exact.doubt >> k & 1U) != 0
+                              ? ask(rays, lane, rays.index[lane], place, 1U << i)
+                              : keep(rays, lane, rays.index[lane], exact, k, id);
+        if (ends) done |= 1U << lane;
+      }
+    }
+    return done;
+  }
+
+  // The last word on the candidates of a block for one ray. True when it is done.
+  bool decide(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
               std::uint32_t found) const {
-    if (found == 0) return false;
-    const LaneBest best = query_.decide(query_.context, index, rays.shear[lane], block, found);
+    return found != 0 && decide_found(rays, lane, index, place, found);
+  }
+
+  [[gnu::noinline]] bool decide_found(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
+              std::uint32_t found) const {
+    counts_.exact_tests += static_cast<std::uint32_t>(__builtin_popcount(found));
+    const std::size_t z = rays.main_axis[lane];
+    const std::size_t axes[3] = {next(z), next(next(z)), z};
+    const auto all = [](float value) { return D::set1(static_cast<double>(value)); };
+    ExactRay<D> ray = {all(rays.o[axes[0]][lane]),     all(rays.o[axes[1]][lane]),
+                       all(rays.o[z][lane]),           D::set1(rays.shear_x[lane]),
+                       D::set1(rays.shear_y[lane]),    D::set1(rays.inv_dz[lane]),
+                       all(rays.t_min[lane]),          all(rays.t_max[lane])};
+    const float* const block = query_.blocks + kBlockFloats * place;
+    ExactHits<D> exact;
+    for (std::uint32_t from = 0; from < kLeafWidth; from += D::kWidth) {
+      const std::uint32_t asked = found >> from & kInDoubles;
+      if (asked == 0) continue;
+      test_exactly<D>(ray, [&](std::size_t c, std::size_t k) {
+        return D::load(block + (3 * c + axes[k]) * kLeafWidth + from);
+      }, exact);
+      const std::uint32_t doubt = asked & exact.doubt;
+      if (doubt != 0 && ask(rays, lane, index, place, doubt << from)) return true;
+      for (std::uint32_t rest = asked & exact.hit; rest != 0; rest &= rest - 1) {
+        const auto k = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        if (keep(rays, lane, index, exact, k, id_of(block + from + k))) return true;
+      }
+    }
+    return false;
+  }
+
+  static std::size_t next(std::size_t axis) { return axis == 2 ? 0 : axis + 1; }
+
+  static std::uint32_t id_of(const float* triangle) {
+    return *reinterpret_cast<const std::uint32_t*>(triangle + kIds);
+  }
+
+  bool ask(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t block,
+           std::uint32_t found) const {
+    const LaneShear shear = {rays.shear_x[lane], rays.shear_y[lane], rays.inv_dz[lane],
+                             rays.main_axis[lane]};
+    return update(rays, lane, query_.decide(query_.context, index, shear, block, found));
+  }
+
+  bool keep(Rays& rays, std::uint32_t lane, std::size_t index, const ExactHits<D>& exact,
+            std::uint32_t k, std::uint32_t id) const {
+    return update(rays, lane,
+                  query_.keep(query_.context, index, exact.t[k], id, exact.u[k], exact.v[k]));
+  }
+
+  // True when the ray is done.
+  static bool update(Rays& rays, std::uint32_t lane, const LaneBest& best) {
     if (kAnyHit) return best.id != kLaneNoHit;
     rays.limit[lane] = best.t;
     if (best.t < rays.t_max[lane]) rays.t_max[lane] = best.t;
@@ -135,7 +219,7 @@ class LeafVisit {
 
   template <class L>
   static FilterRay<L> filter_ray(const Rays& rays, std::uint32_t lane) {
-    const std::size_t z = rays.shear[lane].main_axis;
+    const std::size_t z = rays.main_axis[lane];
     const std::size_t x = z == 2 ? 0 : z + 1;
     const std::size_t y = x == 2 ? 0 : x + 1;
     return {L::set1(rays.o[x][lane]),  L::set1(rays.o[y][lane]), L::set1(rays.o[z][lane]),

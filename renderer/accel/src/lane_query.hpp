@@ -26,20 +26,23 @@ struct LaneShear {
 };
 
 struct LaneCounts {
-  std::uint64_t node_steps, leaf_visits, block_tests, unusable_rays, lane_slots;
+  std::uint64_t node_steps, leaf_visits, block_tests, unusable_rays, lane_slots, exact_tests;
 };
 
 /// Rays to be walked through one tree. The kernel finds leaf blocks and the lanes in them that may
-/// be hit; `decide` (compiled for every processor, in double) has the last word and keeps the hit.
+/// be hit, decides them in double, and lets `keep` choose among the hits.
 struct LaneQuery {
   const void* nodes;   ///< KdNode
+  std::uint64_t node_count;
   const float* blocks; ///< LeafBlock<leaf_width>
   const float* rays;   ///< Ray: 8 floats each
   std::size_t ray_count;
   float box_lo[3], box_hi[3];
 
-  /// Called for `lanes` (a bit each) of `block` that passed the filter. Closest-hit: the best hit
-  /// from now on. Any-hit: an id other than kLaneNoHit ends the ray.
+  /// Called for a hit within the ray's interval. Closest-hit: the best hit from now on. Any-hit: an
+  /// id other than kLaneNoHit ends the ray.
+  LaneBest (*keep)(void* context, std::size_t ray, float t, std::uint32_t id, float u, float v);
+  /// The same for `lanes` (a bit each) of `block` of which it is not known whether they are hit.
   LaneBest (*decide)(void* context, std::size_t ray, const LaneShear& shear, std::uint32_t block,
                      std::uint32_t lanes);
   void* context;

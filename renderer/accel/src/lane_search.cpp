@@ -27,9 +27,8 @@ ShearedRay sheared_ray(const Ray& ray, const LaneShear& shear) {
 /// Calls accept(hit) for the hits among `lanes` of the block until it returns true.
 template <int W, typename Accept>
 void decide_lanes(const ShearedRay& ray, const LeafBlock<W>& block, std::uint32_t lanes,
-                  std::uint64_t& decided, Accept&& accept) {
+                  Accept&& accept) {
   for (; lanes != 0; lanes &= lanes - 1) {
-    ++decided;
     Hit hit;
     if (!test_lane(ray, block, static_cast<std::size_t>(std::countr_zero(lanes)), hit)) continue;
     if (accept(hit)) return;
@@ -42,16 +41,20 @@ struct Closest {
   std::span<const Ray> rays;
   std::span<Hit> hits;
   std::span<const HitOrder> after;
-  std::uint64_t decided = 0;
 
   LaneBest decide(std::size_t ray, const ShearedRay& sheared, std::uint32_t block,
                   std::uint32_t lanes) {
-    Hit& best = hits[ray];
-    decide_lanes(sheared, blocks[block], lanes, decided, [&](const Hit& hit) {
-      const bool counts = after.empty() || comes_after(hit, after[ray]);
-      if (counts && comes_before(hit, best)) best = hit;
+    decide_lanes(sheared, blocks[block], lanes, [&](const Hit& hit) {
+      keep(ray, hit);
       return false;
     });
+    return {hits[ray].t, hits[ray].id};
+  }
+
+  LaneBest keep(std::size_t ray, const Hit& hit) {
+    Hit& best = hits[ray];
+    const bool counts = after.empty() || comes_after(hit, after[ray]);
+    if (counts && comes_before(hit, best)) best = hit;
     return {best.t, best.id};
   }
 };
@@ -62,18 +65,21 @@ struct Any {
   std::span<const Ray> rays;
   std::span<Occlusion> result;
   const KdTree& tree;
-  std::uint64_t decided = 0;
 
   LaneBest decide(std::size_t ray, const ShearedRay& sheared, std::uint32_t block,
                   std::uint32_t lanes) {
     LaneBest found{0.0F, kNoHit};
-    decide_lanes(sheared, blocks[block], lanes, decided, [&](const Hit& hit) {
-      const bool opaque = tree.opaque(hit.id);
-      result[ray] = opaque ? Occlusion::kOpaque : Occlusion::kUndecided;
-      if (opaque) found = {hit.t, hit.id};
-      return opaque;
+    decide_lanes(sheared, blocks[block], lanes, [&](const Hit& hit) {
+      found = keep(ray, hit);
+      return found.id != kNoHit;
     });
     return found;
+  }
+
+  LaneBest keep(std::size_t ray, const Hit& hit) {
+    const bool opaque = tree.opaque(hit.id);
+    result[ray] = opaque ? Occlusion::kOpaque : Occlusion::kUndecided;
+    return opaque ? LaneBest{hit.t, hit.id} : LaneBest{0.0F, kNoHit};
   }
 };
 
@@ -82,6 +88,7 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
   static_assert(sizeof(Ray) == 8 * sizeof(float));
   LaneQuery query{};
   query.nodes = tree.nodes.data();
+  query.node_count = tree.nodes.size();
   query.blocks = reinterpret_cast<const float*>(search.blocks);
   query.rays = reinterpret_cast<const float*>(search.rays.data());
   query.ray_count = search.rays.size();
@@ -95,6 +102,9 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
     auto& asked = *static_cast<Search*>(context);
     return asked.decide(ray, sheared_ray(asked.rays[ray], shear), block, lanes);
   };
+  query.keep = [](void* context, std::size_t ray, float t, std::uint32_t id, float u, float v) {
+    return static_cast<Search*>(context)->keep(ray, {t, id, u, v});
+  };
   LaneCounts counts{};
   kernel(query, counts);
   counters.node_steps += counts.node_steps;
@@ -102,7 +112,7 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
   counters.block_tests += counts.block_tests;
   counters.unusable_rays += counts.unusable_rays;
   counters.lane_slots += counts.lane_slots;
-  counters.exact_tests += search.decided;
+  counters.exact_tests += counts.exact_tests;
 }
 
 }  // namespace

@@ -3,8 +3,7 @@
 // one ray, against all triangles of a block at once. Several groups take turns, so that the nodes
 // that one waits for arrive while others work.
 //
-// Closest-hit rays that go together for long begin as a packet, see lane_packet.hpp. Any-hit rays do
-// not: in lanes they are faster, for memory is waited for by many at once.
+// Rays that go together for long begin as a packet, see lane_packet.hpp.
 //
 // Each ray sees the same cells in the same order with the same roundings as in the scalar walk, so
 // counts of steps, visits and blocks are equal, too.
@@ -19,6 +18,7 @@
 #include "lane_packet.hpp"
 #include "lane_query.hpp"
 #include "lane_setup.hpp"
+#include "lane_sorted.hpp"
 #include "walk_limits.hpp"
 
 namespace raykiln::render {
@@ -43,15 +43,40 @@ struct LaneGroup : LeafRays<V::kWidth> {
 };
 
 /// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth. Twice: lanes of two
-/// neighbouring blocks, or B again.
-template <class V, class B, class Twice, int kLeafWidth, bool kAnyHit, std::size_t kGroups>
+/// neighbouring blocks, or B again. D: lanes of the test in double, dividing the others.
+template <class V, class B, class Twice, class D, int kLeafWidth, bool kAnyHit, std::size_t kGroups>
 class LaneWalk {
  public:
   LaneWalk(const LaneQuery& query, LaneCounts& counts)
-      : query_(query), counts_(counts), source_(query, !kAnyHit), leaf_(query, counts),
+      : query_(query), counts_(counts), source_(query), leaf_(query, counts),
         packet_(query, counts, leaf_) {}
 
   void run() {
+    if (query_.node_count <= kFewNodes) {
+      SortedWalk<V, Source, Packets, kPackets> sorted(query_, source_, packet_);
+      sorted.run();
+    } else {
+      walk();
+    }
+    counts_.unusable_rays += source_.unusable();
+  }
+
+ private:
+  using F = typename V::F;
+  using I = typename V::I;
+  using M = typename V::M;
+  using Group = LaneGroup<V>;
+  using Leaf = LeafVisit<V, B, Twice, D, kLeafWidth, kAnyHit>;
+  static constexpr std::uint32_t kPackets = 4;
+  using Source = RaySource<V, kPackets>;
+  using Packets = PacketWalk<V, Leaf, kPackets>;
+  static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
+  static constexpr std::uint32_t kEntryBytes = sizeof(StackEntry);
+  static constexpr std::uint64_t kStepsWorthIt = 12;  ///< of a ray with others
+  static constexpr std::uint64_t kFewNodes = 1024;  ///< of a tree that is best walked by sorted rays
+  static constexpr std::uint32_t kEmptyLeaf = 1;  ///< nodes[1] of every tree
+
+  void walk() {
     std::uint32_t active = 0;
     for (Group& group : groups_) {
       clear(group);
@@ -66,18 +91,7 @@ class LaneWalk {
         active |= group.active;
       }
     }
-    counts_.unusable_rays += source_.unusable();
   }
-
- private:
-  using F = typename V::F;
-  using I = typename V::I;
-  using M = typename V::M;
-  using Group = LaneGroup<V>;
-  using Leaf = LeafVisit<V, B, Twice, kLeafWidth, kAnyHit>;
-  static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
-  static constexpr std::uint32_t kEntryBytes = sizeof(StackEntry);
-  static constexpr std::uint32_t kEmptyLeaf = 1;  ///< nodes[1] of every tree
 
   static void clear(Group& group) {
     const F zero = V::set1(0.0F);
@@ -97,8 +111,9 @@ class LaneWalk {
     do {
       std::size_t place = 0;
       const bool found = source_.next(
-          place, group.ray[lane], [this](ReadyRays<V>& rays, std::uint32_t lanes, std::size_t i) {
-            return packet_.walk(rays, lanes, i);
+          place, group.ray[lane],
+          [this](ReadyRays<V>* batches, std::uint32_t chosen) {
+            return walk_together(batches, chosen);
           });
       group.stack_size[lane] = 0;
       if (!found) {
@@ -107,13 +122,30 @@ class LaneWalk {
         return;
       }
       begin(group, lane, place);
-    } while (source_.begun() && !pop(group, lane));
+    } while (source_.batch().begun && !pop(group, lane));
     group.active |= 1U << lane;
+  }
+
+  // True if packets did more for the rays than to delay them: any-hit rays are quick in lanes.
+  bool walk_together(ReadyRays<V>* batches, std::uint32_t chosen) {
+    const auto waiting = [&] {
+      std::uint64_t rays = 0;
+      for (std::uint32_t rest = chosen; rest != 0; rest &= rest - 1) {
+        rays += static_cast<std::uint32_t>(
+            __builtin_popcount(batches[__builtin_ctz(rest)].waiting));
+      }
+      return rays;
+    };
+    const std::uint64_t begun = waiting();
+    const std::uint64_t steps = counts_.node_steps;
+    packet_.walk(batches, chosen, false);
+    return !kAnyHit || waiting() * 2 <= begun ||
+           counts_.node_steps - steps >= kStepsWorthIt * begun;
   }
 
   // Puts a ray in a lane; one that was walked with others gets the cells left to it on the stack.
   void begin(Group& group, std::uint32_t lane, std::size_t place) const {
-    const ReadyRays<V>& ready = source_.ready();
+    const ReadyRays<V>& ready = source_.batch();
     for (std::size_t k = 0; k < 3; ++k) {
       group.o[k][lane] = ready.o[k][place];
       group.inv_d[k][lane] = ready.inv_d[k][place];
@@ -127,11 +159,15 @@ class LaneWalk {
     group.t_max[lane] = ready.t_max[place];
     group.limit[lane] = ready.limit[place];
     group.known[lane] = ready.known[place];
-    group.shear[lane] = ready.shear[place];
+    group.shear_x[lane] = ready.shear_x[place];
+    group.shear_y[lane] = ready.shear_y[place];
+    group.inv_dz[lane] = ready.inv_dz[place];
+    group.main_axis[lane] = ready.main_axis[place];
     group.node[lane] = 0;
-    if (!source_.begun()) return;
+    if (!ready.begun) return;
     const auto at = static_cast<std::uint32_t>(place);
-    group.stack_size[lane] = packet_.hand_over(at, group.stack[lane]) * kEntryBytes;
+    group.stack_size[lane] =
+        packet_.hand_over(source_.batch_number(), at, group.stack[lane]) * kEntryBytes;
   }
 
   // A leaf with triangles is visited in the turn after the one that finds it: its block has the
@@ -230,9 +266,9 @@ class LaneWalk {
 
   const LaneQuery& query_;
   LaneCounts& counts_;
-  RaySource<V> source_;
+  Source source_;
   Leaf leaf_;
-  PacketWalk<V, Leaf> packet_;
+  Packets packet_;
   Group groups_[kGroups];
 };
 

@@ -9,6 +9,28 @@
 namespace raykiln::render {
 namespace {
 
+/// Eight lanes in double.
+struct Doubles8 {
+  static constexpr std::uint32_t kWidth = 8;
+  using F = __m512d;
+
+  static F load(const float* p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
+  static F load(const double* p) { return _mm512_load_pd(p); }
+  static F set1(double v) { return _mm512_set1_pd(v); }
+  static void store(float* p, F v) { _mm256_store_ps(p, _mm512_cvtpd_ps(v)); }
+  static F round_to_float(F v) { return _mm512_cvtps_pd(_mm512_cvtpd_ps(v)); }
+  static F add(F a, F b) { return _mm512_add_pd(a, b); }
+  static F sub(F a, F b) { return _mm512_sub_pd(a, b); }
+  static F mul(F a, F b) { return _mm512_mul_pd(a, b); }
+  static F div(F a, F b) { return _mm512_div_pd(a, b); }
+  static F min(F a, F b) { return _mm512_min_pd(a, b); }
+  static F max(F a, F b) { return _mm512_max_pd(a, b); }
+  static F abs(F a) { return _mm512_abs_pd(a); }
+  static std::uint32_t lt(F a, F b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+  static std::uint32_t le(F a, F b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+  static std::uint32_t eq(F a, F b) { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ); }
+};
+
 struct Lanes16 {
   static constexpr std::uint32_t kWidth = 16;
   using F = __m512;

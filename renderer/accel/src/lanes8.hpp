@@ -9,6 +9,31 @@
 namespace raykiln::render {
 namespace {
 
+/// Four lanes in double.
+struct Doubles4 {
+  static constexpr std::uint32_t kWidth = 4;
+  using F = __m256d;
+
+  static F load(const float* p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
+  static F load(const double* p) { return _mm256_load_pd(p); }
+  static F set1(double v) { return _mm256_set1_pd(v); }
+  static void store(float* p, F v) { _mm_store_ps(p, _mm256_cvtpd_ps(v)); }
+  static F round_to_float(F v) { return _mm256_cvtps_pd(_mm256_cvtpd_ps(v)); }
+  static F add(F a, F b) { return _mm256_add_pd(a, b); }
+  static F sub(F a, F b) { return _mm256_sub_pd(a, b); }
+  static F mul(F a, F b) { return _mm256_mul_pd(a, b); }
+  static F div(F a, F b) { return _mm256_div_pd(a, b); }
+  static F min(F a, F b) { return _mm256_min_pd(a, b); }
+  static F max(F a, F b) { return _mm256_max_pd(a, b); }
+  static F abs(F a) { return _mm256_andnot_pd(set1(-0.0), a); }
+  static std::uint32_t lt(F a, F b) { return bits(_mm256_cmp_pd(a, b, _CMP_LT_OQ)); }
+  static std::uint32_t le(F a, F b) { return bits(_mm256_cmp_pd(a, b, _CMP_LE_OQ)); }
+  static std::uint32_t eq(F a, F b) { return bits(_mm256_cmp_pd(a, b, _CMP_EQ_OQ)); }
+
+ private:
+  static std::uint32_t bits(F m) { return static_cast<std::uint32_t>(_mm256_movemask_pd(m)); }
+};
+
 struct Lanes8 {
   static constexpr std::uint32_t kWidth = 8;
   using F = __m256;

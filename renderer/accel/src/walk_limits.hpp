@@ -7,6 +7,7 @@ namespace raykiln::render {
 /// Directions whose largest component is outside of these count as zero or infinite: no hit.
 constexpr float kMinDirection = 0x1p-100F;
 constexpr float kMaxDirection = 0x1p100F;
+constexpr float kLargestFloat = 0x1.fffffep127F;
 
 /// By how much a walk takes cells to be larger than they are: see scalar_walk.hpp.
 constexpr float kAbsoluteSlack = 0x1p-43F;

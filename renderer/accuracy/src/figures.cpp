@@ -1,5 +1,6 @@
 #include "figures.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "raykiln/accuracy/quantiles.hpp"
@@ -8,7 +9,16 @@ namespace raykiln::render {
 namespace {
 
 constexpr double kTailImage = 0.4;  ///< part of rel_mse in tails that raises the flag
+/// Parts of rel_mse in tails up to which intervals are as they are, and from which on they are widest.
+constexpr double kTailsNone = 0.2, kTailsAll = 0.8;
 constexpr double kTailWidening = 3.0;
+
+/// Grows with the tails instead of beginning at the flag: a picture that is about to raise or lose it is judged alike on
+/// both sides, and what is not flagged yet has some of the doubt already.
+double widening_of(double tails) {
+  const double part = std::clamp((tails - kTailsNone) / (kTailsAll - kTailsNone), 0.0, 1.0);
+  return 1.0 + (kTailWidening - 1.0) * part;
+}
 
 Figure figure(const Square& square, double widening) {
   if (!(square.value > 0.0)) return {};
@@ -35,7 +45,7 @@ bool note_survey(ImageError& error, const Survey& survey) {
 void set_figures(ImageError& error, const Squares& squares, double tails) {
   error.grade = error.least_samples < kSampleFloor ? ErrorGrade::kRough : ErrorGrade::kMeasured;
   error.heavy_tailed = tails > kTailImage;
-  const double widening = error.heavy_tailed ? kTailWidening : 1.0;
+  const double widening = widening_of(tails);
   error.rel_mse = figure(squares.relative, widening);
   error.error = root(error.rel_mse);
   error.rmse = root(figure(squares.linear, widening));

@@ -14,10 +14,6 @@ namespace {
 constexpr int kWindowRadius = 1;
 constexpr int kStripRows = 16;  ///< rows that are worked on at once: what they need stays near the processor
 
-std::size_t pixels_of(const Film& film) {
-  return static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
-}
-
 /// Variances of one channel, drawn to those of their windows. One sample of many that make up a
 /// variance adds (share v) of it, so that the estimate scatters by share v^2.
 std::vector<double> pooled(const std::vector<PixelStatistics>& pixels, std::size_t channel,
@@ -35,26 +31,26 @@ std::vector<double> pooled(const std::vector<PixelStatistics>& pixels, std::size
   return own;
 }
 
-}  // namespace
-
-PixelErrors pixel_errors(const Film& film) {
-  const std::size_t pixels = pixels_of(film), width = static_cast<std::size_t>(film.width());
-  PixelErrors result{.width = film.width(),
-                     .height = film.height(),
+/// `statistics` of each index.
+template <typename Statistics>
+PixelErrors errors_of(int columns, int rows, const Statistics& statistics) {
+  const auto width = static_cast<std::size_t>(columns), pixels = width * static_cast<std::size_t>(rows);
+  PixelErrors result{.width = columns,
+                     .height = rows,
                      .mean = std::vector<double>(3 * pixels),
                      .standard_error = std::vector<double>(3 * pixels, std::numeric_limits<double>::quiet_NaN())};
-  for (int y0 = 0; y0 < film.height(); y0 += kStripRows) {
-    const int y1 = std::min(y0 + kStripRows, film.height());
+  for (int y0 = 0; y0 < rows; y0 += kStripRows) {
+    const int y1 = std::min(y0 + kStripRows, rows);
     // With as many rows around as windows reach.
-    const int first = std::max(0, y0 - kWindowRadius), last = std::min(film.height(), y1 + kWindowRadius);
+    const int first = std::max(0, y0 - kWindowRadius), last = std::min(rows, y1 + kWindowRadius);
     const std::size_t offset = static_cast<std::size_t>(first) * width;
     std::vector<PixelStatistics> strip(static_cast<std::size_t>(last - first) * width);
     std::vector<double> known(strip.size());
     for (std::size_t i = 0; i < strip.size(); ++i) {
-      strip[i] = pixel_statistics(film, offset + i);
+      strip[i] = statistics(offset + i);
       known[i] = strip[i].known ? 1.0 : 0.0;
     }
-    const Windows windows{film.width(), last - first, kWindowRadius};
+    const Windows windows{columns, last - first, kWindowRadius};
     known = windows.sums(known);  // how many of each window are
     for (std::size_t c = 0; c < 3; ++c) {
       const auto variances = pooled(strip, c, windows, known);
@@ -66,6 +62,17 @@ PixelErrors pixel_errors(const Film& film) {
     }
   }
   return result;
+}
+
+}  // namespace
+
+PixelErrors pixel_errors(const Film& film) {
+  return errors_of(film.width(), film.height(), [&](std::size_t i) { return pixel_statistics(film, i); });
+}
+
+PixelErrors pixel_errors(std::span<const PixelSums> pixels, int width, SampleRelation relation) {
+  const int height = width > 0 ? static_cast<int>(pixels.size() / static_cast<std::size_t>(width)) : 0;
+  return errors_of(width, height, [&](std::size_t i) { return pixel_statistics(pixels[i], relation); });
 }
 
 }  // namespace raykiln::render

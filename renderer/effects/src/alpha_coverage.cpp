@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "raykiln/shading/coverage.hpp"
 #include "rows.hpp"
 #include "sources.hpp"
 
@@ -5,24 +8,29 @@ namespace raykiln::render {
 namespace {
 
 Judgement judge(const EffectView& view) {
-  const Material* m = find_material(
-      view, [](const Material& c) { return has_facets(c) && c.facets.coverage < 1.0F; });
-  return of_surface(
-      view, m,
-      m != nullptr ? says(*m, "coverage", static_cast<double>(m->facets.coverage)) : "",
-      "all materials in use cover their surfaces");
+  const auto& used = view.use.materials;
+  const auto found =
+      std::find_if(used.begin(), used.end(), [&](std::uint32_t id) { return has_open_parts(view.scene, id); });
+  if (found == used.end()) return {false, "all materials in use cover their surfaces"};
+  const Material& m = view.scene.materials[*found];
+  const bool plain = m.coverage < 1.0F;
+  return of_surface(view, &m,
+                    plain ? says(m, "coverage", static_cast<double>(m.coverage))
+                          : named(m) + " has a texture of coverage",
+                    "");
 }
 
 void provoke(const EffectExample& at) {
-  row_of(Effect::kMicrofacetLobes).provoke(at);
-  at.scene.materials[at.material].facets.coverage = 0.3F;
+  Material& material = at.scene.materials[at.material];
+  if (!is_reflecting(material)) material.diffuse = {0.5F, 0.6F, 0.2F};
+  material.coverage = 0.3F;
 }
 
 }  // namespace
 
 const EffectRow kAlphaCoverageRow{.effect = Effect::kAlphaCoverage,
                                   .name = "alpha_coverage",
-                                  .left_out = "light that passes straight through a surface's gaps",
+                                  .left_out = "asking at hits whether a surface is there, and rays that go on where it is not",
                                   .grade = Grade::kUnbounded,
                                   .judge = judge,
                                   .provoke = provoke};

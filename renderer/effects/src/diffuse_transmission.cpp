@@ -8,7 +8,13 @@ namespace {
 
 Judgement judge(const EffectView& view) {
   const Material* m = find_material(
-      view, [](const Material& c) { return c.model == SurfaceModel::kPhong && !is_black(c.diffuse) && c.transparent > 0.0F; });
+      view, [](const Material& c) {
+        if (c.model == SurfaceModel::kMicrofacet) return !is_black(c.facets.diffuse_through);
+        return !is_black(c.diffuse) && c.transparent > 0.0F;
+      });
+  if (m != nullptr && m->model == SurfaceModel::kMicrofacet) {
+    return of_surface(view, m, says(*m, "diffuse transmission", m->facets.diffuse_through), "");
+  }
   return of_surface(
       view, m,
       m != nullptr ? says(*m, "diffuse and transparent", static_cast<double>(m->transparent)) : "",

@@ -145,7 +145,8 @@ std::variant<Bytes, EncodeError> encode_exr(const Image& image,
       return EncodeError{"plane " + plane.name + " does not fit the picture"};
     }
     for (std::size_t c = 0; c < of_plane; ++c) {
-      names.push_back(of_plane == 1 ? plane.name : plane.name + "." + "RGB"[c]);
+      if (c < plane.channels.size()) names.emplace_back(plane.channels[c]);
+      else names.push_back(of_plane == 1 ? plane.name : plane.name + "." + "RGB"[c]);
       channels.push_back({&plane.values[c], of_plane});
     }
   }

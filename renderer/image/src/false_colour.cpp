@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "raykiln/math/srgb.hpp"
+
 namespace raykiln::render {
 namespace {
 
@@ -72,6 +74,35 @@ Image false_colour(std::span<const float> values, int width, int height, const V
     const auto value = static_cast<double>(values[i]);
     const auto rgb = std::isnan(value) ? kUnknown : colour(position(value, range));
     for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * i + c] = static_cast<float>(rgb[c]);
+  }
+  return image;
+}
+
+Image direction_colours(std::span<const float> directions, int width, int height) {
+  Image image{.width = width, .height = height, .rgb = std::vector<float>(directions.size())};
+  for (std::size_t i = 0; i < directions.size(); i += 3) {
+    const auto* d = &directions[i];
+    if (d[0] == 0.0F && d[1] == 0.0F && d[2] == 0.0F) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double display = std::clamp(0.5 + 0.5 * static_cast<double>(d[c]), 0.0, 1.0);
+      image.rgb[i + c] = static_cast<float>(linear_of_srgb(display));
+    }
+  }
+  return image;
+}
+
+// Steps of the golden section go round the circle of hues without coming near an earlier one soon.
+Image id_colours(std::span<const float> ids, int width, int height) {
+  constexpr double kGolden = 0.61803398874989485;
+  Image image{.width = width, .height = height, .rgb = std::vector<float>(3 * ids.size())};
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (ids[i] == 0.0F) continue;
+    const double turns = kGolden * static_cast<double>(ids[i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double phase = turns - std::floor(turns) + static_cast<double>(c) / 3.0;
+      const double wave = 0.5 + 0.5 * std::cos(6.283185307179586 * phase);
+      image.rgb[3 * i + c] = static_cast<float>(linear_of_srgb(0.15 + 0.8 * wave));
+    }
   }
   return image;
 }

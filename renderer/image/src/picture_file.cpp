@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 #include <new>
+#include <type_traits>
 
 #include "colour_channels.hpp"
 #include "png_chunks.hpp"
@@ -91,6 +92,45 @@ bool read_pixels(OIIO::ImageInput& input, const std::array<std::size_t, 3>& chan
   return true;
 }
 
+template <class Value>
+bool read_alpha(OIIO::ImageInput& input, OIIO::TypeDesc type, std::vector<Value>& values) {
+  const OIIO::ImageSpec spec = input.spec();
+  values.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+  return input.read_image(0, 0, spec.alpha_channel, spec.alpha_channel + 1, type, values.data());
+}
+
+template <class Value>
+void keep_means(std::vector<Value>& values) {
+  const std::size_t pixels = values.size() / 3;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const Value* v = &values[3 * i];
+    if constexpr (std::is_same_v<Value, float>) {
+      values[i] = (v[0] + v[1] + v[2]) / 3.0F;
+    } else {
+      values[i] = static_cast<Value>((v[0] + v[1] + v[2] + 1) / 3);
+    }
+  }
+  values.resize(pixels);
+  values.shrink_to_fit();
+}
+
+/// One value a pixel: alpha, or without it the mean of the colours if they are given.
+bool read_coverage(OIIO::ImageInput& input, const std::optional<std::array<std::size_t, 3>>& colours,
+                   PictureFile& picture) {
+  picture.channels = 1;
+  const bool bytes = stays_bytes(picture.format, input.spec());
+  if (input.spec().alpha_channel >= 0) {
+    return bytes ? read_alpha(input, OIIO::TypeDesc::UINT8, picture.srgb8)
+                 : read_alpha(input, OIIO::TypeDesc::FLOAT, picture.linear);
+  }
+  if (!colours) return true;
+  const bool read = bytes ? read_pixels(input, *colours, OIIO::TypeDesc::UINT8, picture.srgb8)
+                          : read_pixels(input, *colours, OIIO::TypeDesc::FLOAT, picture.linear);
+  keep_means(picture.srgb8);
+  keep_means(picture.linear);
+  return read;
+}
+
 bool read_values(OIIO::ImageInput& input, const std::array<std::size_t, 3>& channels,
                  PictureFile& picture) {
   if (stays_bytes(picture.format, input.spec())) {
@@ -132,7 +172,8 @@ namespace {
 
 using PictureOrError = std::variant<PictureFile, PictureFileError>;
 
-PictureOrError decode_file(std::span<const std::uint8_t> bytes, const PictureFileLimits& limits) {
+PictureOrError decode_file(std::span<const std::uint8_t> bytes, const PictureFileLimits& limits,
+                           PictureChannels wanted) {
   const auto format = picture_format(bytes);
   if (!format) return PictureFileError{.message = "it is neither PNG nor JPEG, EXR or HDR"};
   if (*format == PictureFormat::kPng && !png_is_whole(bytes)) {
@@ -149,14 +190,16 @@ PictureOrError decode_file(std::span<const std::uint8_t> bytes, const PictureFil
     return PictureFileError{.message = "it cannot be read: " + input->geterror()};
   }
   if (auto error = check(*format, input->spec(), bytes.size(), limits)) return *error;
-  const auto channels = colour_channels(input->spec().channelnames);
+  auto channels = colour_channels(input->spec().channelnames);
   if (!channels) return PictureFileError{.message = "it has no channels R, G, B"};
   PictureFile picture{.format = *format,
                       .width = input->spec().width,
                       .height = input->spec().height,
                       .srgb8 = {},
                       .linear = {}};
-  if (!read_values(*input, *channels, picture)) {
+  if (wanted == PictureChannels::kAlpha) channels.reset();
+  if (wanted == PictureChannels::kColour ? !read_values(*input, *channels, picture)
+                                         : !read_coverage(*input, channels, picture)) {
     return PictureFileError{.message = "it cannot be read: " + input->geterror()};
   }
   return picture;
@@ -164,9 +207,10 @@ PictureOrError decode_file(std::span<const std::uint8_t> bytes, const PictureFil
 
 }  // namespace
 
-PictureOrError read_picture_file(std::span<const std::uint8_t> bytes, const PictureFileLimits& limits) {
+PictureOrError read_picture_file(std::span<const std::uint8_t> bytes, const PictureFileLimits& limits,
+                                 PictureChannels channels) {
   try {
-    return decode_file(bytes, limits);
+    return decode_file(bytes, limits, channels);
   } catch (const std::bad_alloc&) {  // the library's buffers for a very wide picture
     return PictureFileError{.message = "memory ran out while it was decoded", .no_room = true};
   }

@@ -75,6 +75,12 @@ CameraRays::Sight CameraRays::through_lens(double x, double y, const VertexKey& 
 
 Vec3f CameraRays::direction(double x, double y) const { return Vec3f(sight(x, y).towards); }
 
+PathCone CameraRays::cone(const Ray& ray) const {
+  const double pixel = length(step_x_);
+  if (camera_.projection == Projection::kOrthographic) return {pixel, 0.0};
+  return {pixel * std::max(depth(Vec3d(ray.o)), 0.0), pixel * dot(normalize(Vec3d(ray.d)), camera_.forward)};
+}
+
 Ray CameraRays::ray(int x, int y, PixelMode mode, const VertexKey& vertex, PixelFilter filter) const {
   const bool random = mode == PixelMode::kRandom;
   const double dx = random ? filtered_offset(filter, uniform(vertex, Dimension::kPixelX)) : 0.5;

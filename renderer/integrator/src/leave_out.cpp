@@ -42,6 +42,7 @@ void leave_out(Bsdf& b, const Material& material, EffectSet effects, bool all_sp
 void leave_out(MicrofacetBsdf& b, EffectSet effects, bool all_specular) {
   leave_out(b, FacetsLeftOut{
                    .diffuse = effects.contains(Effect::kDiffuseReflection),
+                   .diffuse_through = effects.contains(Effect::kDiffuseTransmission),
                    .reflection = all_specular || effects.contains(Effect::kMicrofacetLobes),
                    .transmission = all_specular || effects.contains(Effect::kRefraction)});
 }

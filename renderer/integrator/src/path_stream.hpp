@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "raykiln/math/ray.hpp"
+#include "raykiln/integrator/camera_ray.hpp"
 #include "raykiln/sampling/random.hpp"
 #include "raykiln/shading/light_tree.hpp"
 
@@ -29,6 +30,7 @@ struct PathStream {
   /// Where each path comes from, as its emitter was drawn for there; empty where emitters are not
   /// drawn from a tree.
   std::vector<EmitterReceiver> origins;
+  std::vector<PathCone> cones;  ///< of each path's ray; empty where textures are read exactly
 
   [[nodiscard]] std::size_t size() const { return rays.size(); }
   void push(const Ray& ray, const PathState& state) {
@@ -39,10 +41,17 @@ struct PathStream {
     push(ray, state);
     origins.push_back(origin);
   }
+  /// With `from_places` the places where paths come from follow.
+  void resize(std::size_t size, bool from_places) {
+    rays.resize(size);
+    states.resize(size);
+    if (from_places) origins.resize(size);
+  }
   void clear() {
     rays.clear();
     states.clear();
     origins.clear();
+    cones.clear();
   }
 };
 

@@ -4,6 +4,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "first_surface.hpp"
+#include "matte_group.hpp"
+#include "gap_walk.hpp"
 #include "path_stream.hpp"
 #include "shadow_queue.hpp"
 #include "vertex_shading.hpp"
@@ -40,6 +43,7 @@ void add(RenderStats& stats, const RenderStats& other) {
   stats.lights_at_hits += other.lights_at_hits;
   stats.truncated += other.truncated;
   stats.roulette_ends += other.roulette_ends;
+  stats.gap_rays += other.gap_rays;
   stats.closest_calls += other.closest_calls;
   stats.short_calls_while_many_live += other.short_calls_while_many_live;
   stats.traversal_seconds += other.traversal_seconds;
@@ -64,6 +68,9 @@ struct PathTracer::Scratch {
   PathStream next;   ///< their continuations
   std::vector<Hit> hits;
   ShadowQueue shadows;
+  MatteGroup mattes;
+  Material painted{};  ///< for layers
+  GapWalk gaps{};
 };
 
 /// One call of trace().
@@ -72,6 +79,7 @@ struct PathTracer::Call {
   std::span<PathResult> results;
   RenderStats& stats;
   const std::stop_token& stop;
+  std::span<LayerSample> layers;
   std::size_t started = 0;  ///< starts whose camera ray has been shot
 };
 
@@ -79,7 +87,8 @@ PathTracer::PathTracer(const TransportScene& scene, const CameraRays& camera,
                        const PathSettings& settings)
     : camera_(camera) {
   const Transport transport = make_transport(scene, settings);
-  scratch_.reset(new Scratch{transport, render::shading_loop(switches_for(transport)), {}, {}, {}, {}});
+  scratch_.reset(new Scratch{transport, render::shading_loop(switches_for(transport)), {}, {}, {}, {},
+                             MatteGroup(transport), {}});
 }
 
 PathTracer::~PathTracer() = default;
@@ -102,22 +111,62 @@ void PathTracer::admit(Call& call) {
     state.slot = static_cast<std::uint32_t>(call.started);
     front.push(camera_.ray(x, y, settings.pixel_mode, vertex_key(state.key, 0, 0), settings.pixel_filter),
                state);
+    if (scratch_->transport.pyramids != nullptr) front.cones.push_back(camera_.cone(front.rays.back()));
     if (scratch_->transport.emitters_by_tree) front.origins.emplace_back();
   }
 }
 
 void PathTracer::advance(Call& call, std::size_t begin, std::size_t end) {
   Scratch& scratch = *scratch_;
-  const PathStream& front = scratch.front;
+  PathStream& front = scratch.front;
   const std::span<const Ray> rays(front.rays.data() + begin, end - begin);
   scratch.hits.resize(rays.size());
   const Clock::time_point start = Clock::now();
   closest_hits(scratch.transport.tree, rays, scratch.hits, {}, scratch.transport.settings.traversal,
                &call.stats.traversal);
+  if (scratch.transport.gaps.any()) {
+    scratch.gaps.paths(scratch.transport, rays,
+                       std::span(scratch.front.states).subspan(begin, end - begin), scratch.hits,
+                       call.results, call.stats);
+  }
   call.stats.traversal_seconds += seconds_since(start);
   call.stats.closest_calls += 1;
   call.stats.short_calls_while_many_live += rays.size() < kManyRays && front.size() >= kManyRays;
+  if (!call.layers.empty()) look(call, begin, end);
   shade(call, begin, end);
+  if (call.layers.empty()) return;
+  mark_light(scratch.transport, std::span(front.states).subspan(begin, end - begin), call.results, call.layers);
+}
+
+void PathTracer::look(Call& call, std::size_t begin, std::size_t end) {
+  Scratch& scratch = *scratch_;
+  for (std::size_t i = begin; i < end; ++i) {
+    const PathState& state = scratch.front.states[i];
+    if (state.bounce > 0) continue;
+    call.layers[state.slot] =
+        first_surface(scratch.transport, camera_, scratch.front.rays[i], scratch.hits[i - begin], scratch.painted);
+  }
+}
+
+void PathTracer::dark(Call& call) {
+  fill_with_background(call.results, scratch_->transport.background);
+  if (call.layers.empty()) return;
+  std::fill(call.layers.begin(), call.layers.end(), LayerSample{});
+  Scratch& scratch = *scratch_;
+  const bool surfaces = !bounds(scratch.transport.tree).empty();
+  for (admit(call); surfaces && scratch.front.size() > 0 && !call.stop.stop_requested(); admit(call)) {
+    scratch.hits.resize(scratch.front.size());
+    closest_hits(scratch.transport.tree, scratch.front.rays, scratch.hits, {}, scratch.transport.settings.traversal,
+                 &call.stats.traversal);
+    if (scratch.transport.gaps.any()) {
+      scratch.gaps.paths(scratch.transport, scratch.front.rays, scratch.front.states, scratch.hits, call.results,
+                         call.stats);
+    }
+    call.stats.camera_rays += scratch.front.size();
+    look(call, 0, scratch.front.size());
+    scratch.front.clear();
+  }
+  for (std::size_t i = 0; i < call.results.size(); ++i) call.layers[i].emission = call.results[i].emitted;
 }
 
 void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
@@ -126,9 +175,9 @@ void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
   const Clock::time_point start = Clock::now();
   const double traversal_before = stats.traversal_seconds;
   ShadingSinks sinks{call.results, scratch.shadows, scratch.next, stats, call.stop, {}};
-  scratch.loop.run(scratch.transport, {scratch.front, scratch.hits, begin, end}, sinks);
+  scratch.loop.run(scratch.transport, {scratch.front, scratch.hits, begin, end, scratch.mattes}, sinks);
   scratch.shadows.flush(scratch.transport.tree, scratch.transport.settings.traversal, call.results,
-                        stats);
+                        stats, scratch.transport.gaps);
   stats.shading_seconds += seconds_since(start) - (stats.traversal_seconds - traversal_before);
 }
 
@@ -136,7 +185,7 @@ void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
 // of one start always come in order of (bounce, node), wherever a call is cut. Starts are let in
 // as others end, which keeps calls long; with branches, in groups whose trees fit the bound.
 bool PathTracer::trace(std::span<const PathStart> starts, std::span<PathResult> results,
-                       RenderStats& stats, const std::stop_token& stop) {
+                       RenderStats& stats, const std::stop_token& stop, std::span<LayerSample> layers) {
   Scratch& scratch = *scratch_;
   scratch.front.clear();
   scratch.shadows.clear();
@@ -144,11 +193,12 @@ bool PathTracer::trace(std::span<const PathStart> starts, std::span<PathResult> 
   const bool no_surface =
       bounds(scratch.transport.tree).empty() && scratch.transport.environment == nullptr;
   if (no_surface || !scratch.transport.has_light) {
-    fill_with_background(results, scratch.transport.background);
+    Call call{starts, results, stats, stop, layers};
+    dark(call);
     stats.paths += starts.size();
     return !stop.stop_requested();
   }
-  Call call{starts, results, stats, stop};
+  Call call{starts, results, stats, stop, layers};
   for (admit(call); scratch.front.size() > 0; admit(call)) {
     scratch.next.clear();
     const std::size_t live = scratch.front.size();
@@ -159,6 +209,7 @@ bool PathTracer::trace(std::span<const PathStart> starts, std::span<PathResult> 
     }
     std::swap(scratch.front, scratch.next);
   }
+  if (!layers.empty()) divide_light(results, layers);
   stats.paths += starts.size();
   for (const PathResult& result : results) stats.truncated += result.truncated;
   return true;

@@ -33,9 +33,22 @@ void ShadowQueue::push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const 
   waiting_.push_back({light, slot});
 }
 
+ShadowQueue::Room ShadowQueue::open(std::size_t most) {
+  const std::size_t first = rays_.size();
+  rays_.resize(first + most);
+  waiting_.resize(first + most);
+  return {first, rays_.data() + first, waiting_.data() + first};
+}
+
+void ShadowQueue::close(const Room& room, std::size_t count) {
+  rays_.resize(room.first + count);
+  waiting_.resize(room.first + count);
+}
+
 void ShadowQueue::flush(const KdTree& tree, Traversal traversal, std::span<PathResult> results,
-                        RenderStats& stats) {
+                        RenderStats& stats, const Gaps& gaps) {
   if (rays_.empty()) return;
+  if (gaps.any()) return flush_through_gaps(tree, traversal, gaps, results, stats);
   blocked_.resize(rays_.size());
   const auto start = std::chrono::steady_clock::now();
   any_hits(tree, rays_, blocked_, traversal, &stats.traversal);
@@ -44,6 +57,32 @@ void ShadowQueue::flush(const KdTree& tree, Traversal traversal, std::span<PathR
   stats.shadow_rays += rays_.size();
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     if (blocked_[i] == Occlusion::kNone) results[waiting_[i].slot].direct += waiting_[i].light;
+  }
+  clear();
+}
+
+// What of the light each surface lets through is multiplied, nothing is drawn: a draw would add noise.
+void ShadowQueue::flush_through_gaps(const KdTree& tree, Traversal traversal, const Gaps& gaps,
+                                     std::span<PathResult> results, RenderStats& stats) {
+  hits_.resize(rays_.size());
+  share_.assign(rays_.size(), 1.0);
+  const auto start = std::chrono::steady_clock::now();
+  closest_hits(tree, rays_, hits_, {}, traversal, &stats.traversal);
+  gap_walk_.go_on(
+      tree, traversal, rays_, hits_, stats,
+      [&](std::size_t i, const Hit& hit) {
+        share_[i] *= 1.0 - gaps.met(place_of(hit), Vec3d(rays_[i].d));
+        return !(share_[i] > 0.0);
+      },
+      [&](std::size_t i) {
+        share_[i] = 0.0;
+        results[waiting_[i].slot].truncated = true;
+      });
+  stats.traversal_seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  stats.shadow_rays += rays_.size();
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    if (share_[i] > 0.0) results[waiting_[i].slot].direct += waiting_[i].light * share_[i];
   }
   clear();
 }

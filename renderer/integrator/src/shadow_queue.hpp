@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gap_walk.hpp"
 #include "raykiln/accel/kdtree.hpp"
 #include "raykiln/integrator/path_tracer.hpp"
 
@@ -28,21 +29,37 @@ class ShadowQueue {
   void push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const Rgbd& light,
             std::uint32_t slot);
 
-  /// Traces the queue and adds the light of unblocked rays to PathResult::direct, in the order in
-  /// which they came. Every triangle blocks, glass too.
-  void flush(const KdTree& tree, Traversal traversal, std::span<PathResult> results,
-             RenderStats& stats);
-
-  void clear();
-
- private:
   struct Waiting {
     Rgbd light;
     std::uint32_t slot;
   };
+  /// Room for rays that are written in place, behind those that wait.
+  struct Room {
+    std::size_t first;
+    Ray* rays;
+    Waiting* waiting;
+  };
+  [[nodiscard]] Room open(std::size_t most);
+  /// Keeps the first `count` of them.
+  void close(const Room& room, std::size_t count);
+
+  /// Traces the queue and adds the light of unblocked rays to PathResult::direct, in the order in
+  /// which they came. Every triangle blocks, glass too, but where there are gaps.
+  void flush(const KdTree& tree, Traversal traversal, std::span<PathResult> results,
+             RenderStats& stats, const Gaps& gaps = {});
+
+  void clear();
+
+ private:
   std::vector<Ray> rays_;
   std::vector<Waiting> waiting_;
+  void flush_through_gaps(const KdTree& tree, Traversal traversal, const Gaps& gaps,
+                          std::span<PathResult> results, RenderStats& stats);
+
   std::vector<Occlusion> blocked_;
+  std::vector<Hit> hits_;      ///< where surfaces may have gaps
+  std::vector<double> share_;  ///< of the light that gets through them
+  GapWalk gap_walk_;
 };
 
 }  // namespace raykiln::render

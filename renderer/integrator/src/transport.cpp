@@ -10,21 +10,23 @@ constexpr EffectSet kSources{Effect::kPointLights,       Effect::kSpotLights,
                              Effect::kBackground,        Effect::kEnvironment};
 
 /// What the instances from kPhong on have no code for.
-constexpr EffectSet kRich{Effect::kTextures, Effect::kMicrofacetLobes, Effect::kAlphaCoverage};
+constexpr EffectSet kRich{Effect::kTextures, Effect::kMicrofacetLobes};
 
 /// Effects that are no more than a value in the settings or the data.
 constexpr EffectSet kFolded{
     Effect::kPointLights,     Effect::kSpotLights,  Effect::kDirectionalLights,
     Effect::kEmitterSampling, Effect::kBackground,  Effect::kEnvironment,
     Effect::kFresnel,         Effect::kShadingNormals, Effect::kRoulette,
-    Effect::kTextures,        Effect::kDepthOfField};
+    Effect::kTextures,        Effect::kDepthOfField, Effect::kAlphaCoverage,
+    Effect::kOneSidedSurfaces};
 
 PathSettings folded(PathSettings s, const Emitters& emitters) {
   const EffectSet simulated = s.simulated;
   s.emitter_sampling = s.emitter_sampling && emitters.has_triangles() &&
                        simulated.contains(Effect::kAreaEmitters) &&
                        simulated.contains(Effect::kEmitterSampling);
-  s.bsdf.light.roulette = s.bsdf.light.roulette && simulated.contains(Effect::kRoulette);
+  s.bsdf.light.roulette = s.bsdf.light.roulette && simulated.contains(Effect::kRoulette) &&
+                          s.max_depth > kBouncesBeforeRoulette;
   if (!simulated.contains(Effect::kFresnel)) s.bsdf.light.fresnel = FresnelFormula::kNone;
   if (s.left_out.contains(Effect::kIndirectLight)) s.max_depth = std::min(s.max_depth, 1);
   return s;
@@ -53,6 +55,13 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
   if (!simulated.contains(Effect::kBackground)) t.background = Rgb(0.0F);
   if (!simulated.contains(Effect::kEnvironment)) t.environment = nullptr;
   if (!simulated.contains(Effect::kTextures)) t.textures = nullptr;
+  if (t.textures != nullptr && settings.texture_reading == TextureReading::kFootprint && scene.pyramids != nullptr) {
+    scene.pyramids->make();
+    t.pyramids = scene.pyramids;
+  }
+  t.gaps = gaps_of(s);
+  t.gaps.open_parts = t.gaps.open_parts && simulated.contains(Effect::kAlphaCoverage);
+  t.gaps.back_faces = t.gaps.back_faces && simulated.contains(Effect::kOneSidedSurfaces);
   t.environment_sampling = t.environment != nullptr && settings.emitter_sampling &&
                            simulated.contains(Effect::kEmitterSampling);
   t.emitters_by_tree =

@@ -4,8 +4,14 @@
 #include <span>
 
 #include "raykiln/integrator/path_tracer.hpp"
+#include "raykiln/shading/coverage.hpp"
 
 namespace raykiln::render {
+
+/// Reflections after which roulette may end a path, and what it multiplies the throughput by to get the chance
+/// of going on: see renderer/integrator/README.md.
+inline constexpr int kFirstDrawAfter = 1;
+inline constexpr double kRouletteFactor = 2.0;
 
 /// Data of effects that are not simulated are not here: no point light, a black background, no
 /// environment, no textures, roulette off.
@@ -22,7 +28,9 @@ struct Transport {
   bool environment_sampling = false;  ///< shadow rays are sent to it, too
   bool emitters_by_tree = false;      ///< where they are sampled
   const SurfaceTextures* textures = nullptr;
+  const TexturePyramids* pyramids = nullptr;  ///< where textures are read by footprint
   bool normals = true;    ///< shading normals are interpolated
+  Gaps gaps{};            ///< where light passes straight through surfaces
   bool has_light = true;  ///< any at all; without, nothing is lost where a path is cut off
   PathSettings settings;  ///< emitter_sampling: of triangles
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "leave_out.hpp"
+#include "matte_group.hpp"
 #include "raykiln/shading/environment_light.hpp"
 #include "raykiln/shading/matte_bsdf.hpp"
 #include "raykiln/shading/punctual_light.hpp"
@@ -37,15 +38,15 @@ inline bool finite(const Rgbd& c) {
 }
 inline bool zero(const Rgb& c) { return c == Rgb(0.0F); }
 
-/// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is its throughput
+/// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is twice its throughput
 /// so far. The part of the throughput that is a change of medium is left out of p: inside glass of
 /// index n radiance is n^2 times larger, on the way from the camera throughput n^2 times smaller,
-/// and such a path is worth no less. What goes on has a throughput of `scale`, so weights stay
-/// bounded.
+/// and such a path is worth no less. What goes on has a throughput of at least
+/// half of `scale`, so weights stay bounded.
 inline bool survives_roulette(PathState& path, const VertexKey& key) {
-  if (path.bounce <= static_cast<std::uint32_t>(kBouncesBeforeRoulette)) return true;
+  if (path.bounce <= static_cast<std::uint32_t>(kFirstDrawAfter)) return true;
   const Rgbd& t = path.throughput;
-  const double p = std::max({t.x, t.y, t.z}) / path.scale;
+  const double p = kRouletteFactor * std::max({t.x, t.y, t.z}) / path.scale;
   if (!(p < 1.0)) return true;  // also what is not finite: it is counted further on
   if (uniform(key, Dimension::kRoulette) >= p) return false;
   path.throughput /= p;
@@ -80,10 +81,11 @@ class VertexShader {
   using Lobes = LobesOf<kSwitches>;
   using Vertex = render::Vertex<Lobes>;
 
-  /// `origin`: where the path comes from, if emitters are drawn from a tree; else null.
+  /// `origin`: where the path comes from, if emitters are drawn from a tree; `cone`: what its pixel covers, if
+  /// textures are read by that; else null.
   VertexShader(const Transport& transport, const PathState& state, const EmitterReceiver* origin,
-               ShadingSinks& sinks)
-      : scene_(transport), settings_(transport.settings), state_(state), origin_(origin), sinks_(sinks) {}
+               ShadingSinks& sinks, const PathCone* cone = nullptr)
+      : scene_(transport), settings_(transport.settings), state_(state), origin_(origin), sinks_(sinks), cone_(cone) {}
 
   // L_o = L_e + sum over lights of f L cos + the scattered rays. A shadow ray to an emitter
   // or the environment stands for one more reflection, so it is sent only where such a ray may be;
@@ -97,17 +99,19 @@ class VertexShader {
     SurfacePoint point =
         surface_point(scene_.mesh, hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v),
                       kSwitches.normals && scene_.normals);
-    const Material& material = material_at(point, hit);
+    const TrianglePlace place = covered_place(ray, hit);
+    const Material& material = material_at(point, place);
     if constexpr (kSwitches.rich) {
       if (scene_.textures != nullptr) {
-        const auto bent = mapped_normal(*scene_.textures, scene_.mesh, point.material, place_of(hit),
-                                        point.ns);
+        const auto bent = mapped_normal(*scene_.textures, scene_.mesh, point.material, place, point.ns);
         if (bent) point.ns = *bent;
       }
       if (!zero(material.facets.absorption) && dot(point.ng, Vec3d(ray.d)) > 0.0) {
         PathState dimmed = state_;
         dimmed.throughput *= let_through(material, ray, hit.t);
-        return VertexShader(scene_, dimmed, origin_, sinks_).shade_surface(ray, hit, point, material);
+        VertexShader further(scene_, dimmed, origin_, sinks_, cone_);
+        further.covered_ = covered_;
+        return further.shade_surface(ray, hit, point, material);
       }
     }
     shade_surface(ray, hit, point, material);
@@ -123,7 +127,7 @@ class VertexShader {
     if (last) sinks_.results[state_.slot].truncated = scene_.has_light;
     if (last && !scene_.has_lights_without_surface()) return;
 
-    const Vertex vertex{hit.id, material.transparent > 0.0F, point, lobes(material, point, -ray.d),
+    const Vertex vertex{hit.id, transmits(material), point, lobes(material, point, -ray.d),
                         kSwitches.bounces && !last
                             ? vertex_key(state_.key, state_.node, state_.bounce)
                             : VertexKey{}};
@@ -145,14 +149,24 @@ class VertexShader {
     return glm::exp(-way * Rgbd(material.facets.absorption));
   }
 
-  static TrianglePlace place_of(const Hit& hit) {
-    return {hit.id, static_cast<double>(hit.u), static_cast<double>(hit.v)};
+  /// The place of the hit, with what the path's pixel covers of the triangle. Slanting counts for nothing: it makes
+  /// what is covered longer, never less wide.
+  TrianglePlace covered_place(const Ray& ray, const Hit& hit) {
+    TrianglePlace place = place_of(hit);
+    if (!kSwitches.rich || cone_ == nullptr) return place;
+    covered_ = cone_->width + cone_->spread * static_cast<double>(hit.t) * length(Vec3d(ray.d));
+    const auto& corner = scene_.mesh.triangles[hit.id];
+    const Vec3d p(scene_.mesh.positions[corner[0]]);
+    const Vec3d twice_area = cross(Vec3d(scene_.mesh.positions[corner[1]]) - p, Vec3d(scene_.mesh.positions[corner[2]]) - p);
+    place.pyramids = scene_.pyramids;
+    place.footprint = covered_ * covered_ / length(twice_area);
+    return place;
   }
 
-  const Material& material_at(const SurfacePoint& point, const Hit& hit) {
+  const Material& material_at(const SurfacePoint& point, const TrianglePlace& place) {
     const Material& material = scene_.scene.materials[point.material];
     if (!kSwitches.rich || scene_.textures == nullptr) return material;
-    paint(*scene_.textures, material, point.material, place_of(hit), sinks_.painted);
+    paint(*scene_.textures, material, point.material, place, sinks_.painted);
     return sinks_.painted;
   }
 
@@ -179,9 +193,7 @@ class VertexShader {
       return RichBsdf(bsdf);
     }
     if constexpr (kSwitches.reduced) {
-      Material covered = material;
-      if (leaves_out(Effect::kAlphaCoverage)) covered.facets.coverage = 1.0F;
-      MicrofacetBsdf bsdf = make_microfacet_bsdf(covered, ng, point.ns, wo, settings_.bsdf);
+      MicrofacetBsdf bsdf = make_microfacet_bsdf(material, ng, point.ns, wo, settings_.bsdf);
       leave_out(bsdf, settings_.left_out, caustic);
       return RichBsdf(bsdf);
     } else {
@@ -272,6 +284,9 @@ class VertexShader {
       radiance *= emission_factor(*scene_.textures, sample.point.material,
                                   {sample.triangle, sample.u, sample.v});
     }
+    if (scene_.gaps.any()) {
+      radiance *= scene_.gaps.met({sample.triangle, sample.u, sample.v}, wi);
+    }
     const Vec3f from = ray_origin(vertex.point, wi);
     queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface},
           state_.throughput * value.f_cos * radiance * weight);
@@ -326,8 +341,12 @@ class VertexShader {
       } else {
         sinks_.next.push(ray, child);
       }
+      if (kSwitches.rich && cone_ != nullptr) sinks_.next.cones.push_back({covered_, cone_->spread + spread_by(sample.pdf)});
     }
   }
+
+  /// What a lobe adds to a cone: a quarter of its width, for 1/pdf is about its solid angle. Mirrors add nothing.
+  static double spread_by(double pdf) { return pdf > 0.0 ? 0.25 / std::sqrt(pdf) : 0.0; }
 
   /// Can a light at this place light the surface? Decided in double: the floats in which values are
   /// computed give a light within 1e-7 of the plane's direction the side of a rounding error.
@@ -358,7 +377,8 @@ class VertexShader {
     if (light == Rgbd(0.0)) return;
     sinks_.shadows.push(way.from, way.to, way.end, light, state_.slot);
     if (sinks_.shadows.full()) {
-      sinks_.shadows.flush(scene_.tree, settings_.traversal, sinks_.results, sinks_.stats);
+      sinks_.shadows.flush(scene_.tree, settings_.traversal, sinks_.results, sinks_.stats,
+                           scene_.gaps);
       sinks_.stopped = sinks_.stop.stop_requested();
     }
   }
@@ -370,6 +390,8 @@ class VertexShader {
   const PathState& state_;
   const EmitterReceiver* origin_;
   ShadingSinks& sinks_;
+  const PathCone* cone_;
+  double covered_ = 0.0;  ///< width of what the path's pixel covers here, metres
 };
 
 template <Switches kSwitches>
@@ -377,10 +399,16 @@ void shade_range(const Transport& transport, const ShadingRange& range, ShadingS
   const PathStream& front = range.front;
   for (std::size_t i = range.begin; i < range.end && !sinks.stopped; ++i) {
     (front.states[i].bounce == 0 ? sinks.stats.camera_rays : sinks.stats.bounce_rays) += 1;
+    const Hit& hit = range.hits[i - range.begin];
+    if (kSwitches.bounces && !kSwitches.reduced && range.mattes.takes(hit, front.states[i])) {
+      range.mattes.add(i, transport, range, sinks);
+      continue;
+    }
     const EmitterReceiver* origin = transport.emitters_by_tree ? &front.origins[i] : nullptr;
-    VertexShader<kSwitches>(transport, front.states[i], origin, sinks)
-        .shade(front.rays[i], range.hits[i - range.begin]);
+    const PathCone* cone = kSwitches.rich && transport.pyramids != nullptr ? &front.cones[i] : nullptr;
+    VertexShader<kSwitches>(transport, front.states[i], origin, sinks, cone).shade(front.rays[i], hit);
   }
+  range.mattes.shade(transport, range, sinks);
 }
 
 }  // namespace raykiln::render

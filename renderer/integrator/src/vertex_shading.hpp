@@ -21,12 +21,15 @@ struct ShadingSinks {
   bool stopped = false;  ///< stop was seen: the outcome is worthless, return soon
 };
 
+class MatteGroup;
+
 /// Paths `begin` .. `end` of `front`, whose rays came back with `hits`. Light samples are queued;
 /// the queue is flushed on the way when it is full.
 struct ShadingRange {
   const PathStream& front;
   std::span<const Hit> hits;
   std::size_t begin = 0, end = 0;
+  MatteGroup& mattes;  ///< shades those of its kind
 };
 /// An instance of the loop.
 struct ShadingLoop {

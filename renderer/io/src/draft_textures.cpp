@@ -21,6 +21,16 @@ double display_value(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
+PictureChannels channels_for(PictureRole role) {
+  if (role == PictureRole::kCoverage) return PictureChannels::kAlpha;
+  return role == PictureRole::kOpacity ? PictureChannels::kAlphaOrGrey : PictureChannels::kColour;
+}
+
+bool is_one_all_over(const PictureFile& picture) {
+  return std::all_of(picture.srgb8.begin(), picture.srgb8.end(), [](std::uint8_t v) { return v == 255; }) &&
+         std::all_of(picture.linear.begin(), picture.linear.end(), [](float v) { return v >= 1.0F; });
+}
+
 struct Values {
   std::uint64_t clamped = 0;
   double scale = 1.0;
@@ -94,8 +104,9 @@ std::optional<std::uint32_t> DraftTextures::embedded(const std::string& name, st
                                                      Diagnostics& diagnostics) {
   if (const auto id = known(name, role)) return id;
   std::optional<std::uint32_t> id;
+  const bool three = channels_for(role) == PictureChannels::kColour;
   for (const PictureRole other : {PictureRole::kColour, PictureRole::kEmission, PictureRole::kData}) {
-    const auto twin = known(name, other);
+    const auto twin = three ? known(name, other) : std::nullopt;
     if (twin && (*twin == kNoTexture || !images[*twin].srgb8.empty())) id = twin;
   }
   if (!id) id = decode(name, bytes, user, role, diagnostics);
@@ -114,7 +125,8 @@ std::optional<std::uint32_t> DraftTextures::decode(const std::string& name, std:
   }
   auto read = read_picture_file(
       {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
-      {.max_pixels = limits.max_texture_texels, .max_bytes = limits.max_texture_bytes - bytes_});
+      {.max_pixels = limits.max_texture_texels, .max_bytes = limits.max_texture_bytes - bytes_},
+      channels_for(role));
   const std::string label = "the texture " + in_quotes(name);
   if (const auto* error = std::get_if<PictureFileError>(&read)) {
     if (error->no_room) {
@@ -133,6 +145,7 @@ std::optional<std::uint32_t> DraftTextures::decode(const std::string& name, std:
       value = static_cast<float>(display_value(static_cast<double>(value)));
     }
   }
+  if (picture.channels == 1 && is_one_all_over(picture)) return kNoTexture;
   const auto values = make_usable(picture.linear, role);
   if (!values) {
     return unusable(ImportErrorCode::kNotFinite, label + " has values that are not finite", user,
@@ -148,7 +161,8 @@ std::optional<std::uint32_t> DraftTextures::decode(const std::string& name, std:
                     .width = picture.width,
                     .height = picture.height,
                     .srgb8 = std::move(picture.srgb8),
-                    .linear = std::move(picture.linear)});
+                    .linear = std::move(picture.linear),
+                    .channels = picture.channels});
   scales.push_back(values->scale);
   return id;
 }

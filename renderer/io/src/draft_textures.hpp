@@ -23,7 +23,9 @@ struct PictureUser {
 
 /// What a picture is read for. Colours are at most 1; emission may be anything, and is stored divided by
 /// a power of two so that its values are at most 1, too. Data are numbers in [0, 1], bytes as they are.
-enum class PictureRole { kColour, kEmission, kData };
+/// Coverage is the picture's alpha, one value a texel; a picture that has none, or is opaque all over, is
+/// no picture then. Opacity is the same, or where there is no alpha the brightness.
+enum class PictureRole { kColour, kEmission, kData, kCoverage, kOpacity };
 
 /// Pictures are decoded when a material names them, each once, whether that succeeds or not, within the
 /// limits of the import.

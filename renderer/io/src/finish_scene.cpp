@@ -113,8 +113,12 @@ class Finisher {
     const bool with_normals = !draft_.corner_normals.empty();
     std::size_t kept = 0;
     std::uint64_t collapsed = 0;
+    std::size_t run = 0;
     for (std::size_t i = 0; i < draft_.triangles.size(); ++i) {
       if (i % kItemsPerPoll == 0 && !diagnostics_.may_go_on()) return false;
+      for (; run < draft_.objects.size() && draft_.objects[run].first == i; ++run) {
+        draft_.objects[run].first = static_cast<std::uint32_t>(kept);
+      }
       const auto t = draft_.triangles[i];
       if (has_zero_area(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]])) {
         collapsed += had_area(t) ? 1U : 0U;
@@ -138,6 +142,9 @@ class Finisher {
     mesh.triangles = std::move(draft_.triangles);
     mesh.material_ids = std::move(draft_.material_ids);
     mesh.corner_normals = std::move(draft_.corner_normals);
+    draft_.objects.resize(run);  // those behind have no triangle
+    mesh.objects = std::move(draft_.objects);
+    scene_.object_names = std::move(draft_.object_names);
     return kept > 0 || empty();
   }
 

@@ -73,6 +73,11 @@ void read_extensions(const JsonAt& at, GltfMaterial& material) {
     material.transmission = e->number_in("transmissionFactor", 0.0, 0.0, 1.0);
     note_texture(*e, "transmissionTexture");
   }
+  if (const auto e = extensions->object("KHR_materials_diffuse_transmission")) {
+    material.diffuse_transmission = e->number_in("diffuseTransmissionFactor", 0.0, 0.0, 1.0);
+    material.diffuse_transmission_color =
+        e->vec3_in("diffuseTransmissionColorFactor", Vec3d(1.0), 0.0, kLargestWeight);
+  }
   if (const auto e = extensions->object("KHR_materials_volume")) read_volume(*e, material);
   if (const auto e = extensions->object("KHR_materials_specular")) {
     material.specular = e->number_in("specularFactor", 1.0, 0.0, 1.0);
@@ -106,6 +111,52 @@ bool read_surface_textures(const JsonAt& at, const std::optional<JsonAt>& roughn
   return !at.diagnostics().failed();
 }
 
+// The alpha of the base colour: share of the surface that is there (BLEND), or whether it is there at all
+// (MASK). `holder` has that texture. One that was left out, or whose picture has no alpha, counts as 1.
+bool read_coverage(const JsonAt& at, const std::optional<JsonAt>& holder, GltfTextures& textures,
+                   GltfMaterial& material, MaterialTextures& used) {
+  const std::string mode = at.text_or("alphaMode", "OPAQUE");
+  if (mode == "OPAQUE") {
+    material.alpha = 1.0;
+    return !at.diagnostics().failed();
+  }
+  if (mode != "MASK" && mode != "BLEND") {
+    return at.member("alphaMode").fail(ImportErrorCode::kInvalidValue,
+                                       "there is no alpha mode " + in_quotes(mode));
+  }
+  const bool left_out = material.base_color != Rgbd(0.0) && !used.base.used();
+  if (holder && !left_out) {
+    const char* key = holder->has("diffuseTexture") ? "diffuseTexture" : "baseColorTexture";
+    const auto alpha = textures.use(*holder, key, PictureRole::kCoverage);
+    if (!alpha) return false;
+    used.alpha = *alpha;
+  }
+  if (mode == "MASK") {
+    const double cutoff = at.number_in("alphaCutoff", 0.5, 0.0, kLargestWeight);
+    if (used.alpha.used()) {
+      used.alpha_cutoff = cutoff;
+    } else {
+      material.alpha = material.alpha < cutoff ? 0.0 : 1.0;
+    }
+  }
+  return !at.diagnostics().failed();
+}
+
+// Neither is read where nothing is transmitted.
+bool read_diffuse_transmission(const std::optional<JsonAt>& extensions, GltfTextures& textures,
+                               const GltfMaterial& material, MaterialTextures& used) {
+  const auto at = extensions ? extensions->object("KHR_materials_diffuse_transmission") : std::nullopt;
+  if (!at || material.diffuse_transmission == 0.0) return true;
+  const auto share = textures.use(*at, "diffuseTransmissionTexture", PictureRole::kCoverage);
+  if (!share) return false;
+  const auto colour = textures.use(*at, "diffuseTransmissionColorTexture", PictureRole::kColour);
+  if (!colour) return false;
+  used.through = *share;
+  used.through_colour = *colour;
+  if (used.through.used()) used.metal = metallic_roughness(material);
+  return true;
+}
+
 // A base colour texture of a black base colour, or an emissive one of no emission, is not read.
 bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& material,
                    MaterialTextures& used) {
@@ -120,10 +171,9 @@ bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& mater
     if (!base) return false;
     used.base = *base;
     used.specular_tint = specular_tint(material);
-    if (used.base.used() && at.text_or("alphaMode", "OPAQUE") != "OPAQUE") {
-      at.warn(ImportWarningCode::kIgnoredFeature, "the alpha of textures is ignored");
-    }
   }
+  if (!read_coverage(at, holder, textures, material, used)) return false;
+  if (!read_diffuse_transmission(extensions, textures, material, used)) return false;
   if (!read_surface_textures(at, roughness, textures, material, used)) return false;
   if (!at.has("emissiveTexture") || material.emissive == Rgbd(0.0)) {
     return !at.diagnostics().failed();
@@ -134,17 +184,6 @@ bool read_textures(const JsonAt& at, GltfTextures& textures, GltfMaterial& mater
   // The texture decides where the surface glows: without it, nowhere.
   if (!used.emission.used()) material.emissive = Rgbd(0.0);
   return true;
-}
-
-void apply_alpha_mode(const JsonAt& at, GltfMaterial& material) {
-  const std::string mode = at.text_or("alphaMode", "OPAQUE");
-  if (mode == "OPAQUE") {
-    material.alpha = 1.0;
-  } else if (mode == "MASK") {
-    material.alpha = material.alpha < at.number_or("alphaCutoff", 0.5) ? 0.0 : 1.0;
-  } else if (mode != "BLEND") {
-    at.member("alphaMode").fail(ImportErrorCode::kInvalidValue, "there is no alpha mode " + in_quotes(mode));
-  }
 }
 
 std::string unique_name(const JsonAt& at, std::size_t index, const MaterialTable& table) {
@@ -162,9 +201,9 @@ std::uint32_t read_material(const JsonAt& at, std::size_t index, GltfTextures& t
   GltfMaterial material;
   material.name = unique_name(at, index, draft.materials);
   if (const auto pbr = at.object("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
+  material.double_sided = at.flag_or("doubleSided", false);
   read_emission(at, material);
   read_extensions(at, material);
-  apply_alpha_mode(at, material);
   note_texture(at, "occlusionTexture");
   MaterialTextures used;
   if (!at.diagnostics().failed() && !read_textures(at, textures, material, used)) return 0;

@@ -140,6 +140,7 @@ bool GltfNodes::visit(std::uint64_t index, const Mat4d& parent, std::size_t dept
 bool GltfNodes::contents(const JsonAt& node, const Mat4d& to_world) {
   if (const auto at = node.find("mesh")) {
     const auto index = at->integer();
+    draft_->use_object(draft_->add_object(clean_text(node.text_or("name", ""), kMaxNameBytes)));
     if (!index || !meshes_->instantiate(*index, to_world, *at)) return false;
     if (node.has("skin")) {
       node.warn(ImportWarningCode::kIgnoredFeature, "skins are ignored: the rest pose is shown");

@@ -18,7 +18,8 @@
 namespace raykiln::render::io {
 namespace {
 
-constexpr std::array<std::string_view, 9> kSupported{
+constexpr std::array<std::string_view, 10> kSupported{
+    "KHR_materials_diffuse_transmission",
     "KHR_lights_punctual",        "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_specular",     "KHR_materials_transmission",

@@ -117,7 +117,7 @@ std::optional<std::uint32_t> GltfTextures::image(const JsonAt& texture, PictureR
 std::optional<TextureUse> GltfTextures::use(const JsonAt& holder, const char* key,
                                             PictureRole role) {
   TextureUse use;
-  use.data = role == PictureRole::kData;
+  use.data = role != PictureRole::kColour && role != PictureRole::kEmission;
   const auto info = holder.object(key);
   if (!info) return holder.diagnostics().failed() ? std::nullopt : std::optional(use);
   if (!info->has("index")) {

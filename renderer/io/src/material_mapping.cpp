@@ -25,7 +25,8 @@ Material to_material(const MtlMaterial& mtl) {
   material.specular_exp = mtl.ns;
   material.emission = Rgb(mtl.ke.value_or(Rgbd(0.0)));
   const bool glass = mtl.illum == 4 || mtl.illum == 6 || mtl.illum == 7 || mtl.illum == 9;
-  const double t = 1.0 - mtl.opacity.value_or(glass ? 0.0 : 1.0);
+  if (mtl.masked) material.coverage = static_cast<float>(mtl.opacity.value_or(1.0));
+  const double t = mtl.masked ? 0.0 : 1.0 - mtl.opacity.value_or(glass ? 0.0 : 1.0);
   if (t > 0.0) {
     material.specular_exp = std::max(mtl.ns, kPolishedExponent);
     material.index_of_refraction = static_cast<float>(mtl.ni.value_or(glass ? 1.5 : 1.0));
@@ -56,19 +57,27 @@ MetallicRoughness metallic_roughness(const GltfMaterial& gltf) {
           .roughness = gltf.roughness,
           .f0 = Rgb(dielectric_f0(gltf)),
           .edge = static_cast<float>(gltf.specular),
-          .transmission = static_cast<float>(gltf.transmission)};
+          .transmission = static_cast<float>(gltf.transmission),
+          .through = static_cast<float>(gltf.diffuse_transmission),
+          .through_colour = Rgb(gltf.diffuse_transmission_color)};
+}
+
+bool is_one_sided(const GltfMaterial& gltf) {
+  const bool lets_light_through = gltf.transmission > 0.0 || gltf.diffuse_transmission > 0.0;
+  return !gltf.double_sided && !lets_light_through && !(gltf.thickness > 0.0);
 }
 
 Material to_material(const GltfMaterial& gltf) {
   Material material;
   material.name = gltf.name;
+  material.one_sided = is_one_sided(gltf);
   material.model = SurfaceModel::kMicrofacet;
   mix_metal(metallic_roughness(gltf), material);
   material.index_of_refraction = static_cast<float>(gltf.ior);
-  material.emission = Rgb(gltf.emissive * (gltf.emissive_strength * gltf.alpha));
+  material.emission = Rgb(gltf.emissive * gltf.emissive_strength);
   material.facets.thin = !(gltf.thickness > 0.0);
   if (!material.facets.thin) material.facets.absorption = Rgb(gltf.absorption);
-  material.facets.coverage = static_cast<float>(gltf.alpha);
+  material.coverage = static_cast<float>(gltf.alpha);
   return material;
 }
 
@@ -81,6 +90,7 @@ Material to_phong(const GltfMaterial& gltf) {
   const double through = gltf.transmission;
   Material material;
   material.name = gltf.name;
+  material.one_sided = is_one_sided(gltf);
   material.diffuse = Rgb(dielectric * (1.0 - through) * (1.0 - f0) * gltf.base_color);
   material.specular = Rgb(m * gltf.base_color +
                           dielectric * ((1.0 - through) * f0 + through * gltf.base_color));
@@ -88,11 +98,7 @@ Material to_phong(const GltfMaterial& gltf) {
   material.specular_exp = exponent_of_roughness(gltf.roughness);
   if (through > 0.0) material.index_of_refraction = static_cast<float>(gltf.ior);
   material.emission = Rgb(gltf.emissive * gltf.emissive_strength);
-  if (gltf.alpha < 1.0) {
-    let_through(material, 1.0 - gltf.alpha, Rgbd(1.0));
-    material.specular_exp = std::max(material.specular_exp, kPolishedExponent);
-    material.index_of_refraction = 1.0F;  // coverage, not a body of glass
-  }
+  material.coverage = static_cast<float>(gltf.alpha);
   return material;
 }
 
@@ -109,7 +115,8 @@ Rgb specular_tint(const GltfMaterial& gltf) {
 
 float largest_albedo(const Material& material) {
   if (material.model == SurfaceModel::kMicrofacet) {  // its layers share what arrives
-    return std::max({material.diffuse.x, material.diffuse.y, material.diffuse.z});
+    const Rgb both = material.diffuse + material.facets.diffuse_through;
+    return std::max({both.x, both.y, both.z});
   }
   const Rgb sum = material.diffuse + material.specular;
   return std::max({sum.x, sum.y, sum.z});

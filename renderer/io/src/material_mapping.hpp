@@ -22,6 +22,7 @@ struct MtlMaterial {
   double ns = 10.0;
   std::optional<double> ni;
   std::optional<double> opacity;  ///< d, or 1 - Tr
+  bool masked = false;            ///< a texture says where the surface is: opacity is coverage
   int illum = 2;
 };
 [[nodiscard]] Material to_material(const MtlMaterial& mtl);
@@ -37,12 +38,17 @@ struct GltfMaterial {
   double emissive_strength = 1.0;
   double ior = 1.5;
   double transmission = 0.0;
+  double diffuse_transmission = 0.0;
+  Rgbd diffuse_transmission_color{1.0};
   double specular = 1.0;
   Rgbd specular_color{1.0};
   double thickness = 0.0;  ///< above 0: a body
+  bool double_sided = false;
   Rgbd absorption{0.0};    ///< of its inside, m^-1
 };
 [[nodiscard]] MetallicRoughness metallic_roughness(const GltfMaterial& gltf);
+/// Has it a front alone? Not what light goes through: it has to get out again.
+[[nodiscard]] bool is_one_sided(const GltfMaterial& gltf);
 /// Of microfacets.
 [[nodiscard]] Material to_material(const GltfMaterial& gltf);
 /// The nearest of the seed's model: what a sidecar that names a field of that model starts from.

@@ -45,6 +45,7 @@ class MtlReader {
     if (word == "Ke") return emission(text, word);
     if (word == "map_Kd") return map(text, PictureRole::kColour, base_);
     if (word == "map_Ke") return map(text, PictureRole::kEmission, emission_);
+    if (word == "map_d") return map(text, PictureRole::kOpacity, alpha_);
     if (word == "Tf") return color(text, word, kLargestWeight, current_->tf);
     if (word == "Ns") return number(text, word, 0.0, kMaxExponent, current_->ns);
     if (word == "Ni") return refraction(text);
@@ -76,7 +77,7 @@ class MtlReader {
     }
     current_.emplace();
     current_->name = name;
-    base_ = emission_ = {};
+    base_ = emission_ = alpha_ = {};
     return true;
   }
 
@@ -85,10 +86,12 @@ class MtlReader {
     const std::uint32_t id = draft_.materials.intern(current_->name);
     if (!draft_.materials.defined[id]) {
       if (emission_.used() && !current_->ke) current_->ke = Rgbd(1.0);
-      if (base_.used() || emission_.used()) {
+      current_->masked = alpha_.used();
+      if (base_.used() || emission_.used() || alpha_.used()) {
         MaterialTextures& used = draft_.textures.of_material(id);
         used.base = base_;
         used.emission = emission_;
+        used.alpha = alpha_;
       }
       draft_.materials.materials[id] = to_material(*current_);
       draft_.materials.defined[id] = true;
@@ -199,7 +202,7 @@ class MtlReader {
   Diagnostics& diagnostics_;
   SceneDraft& draft_;
   LineReader lines_;
-  TextureUse base_, emission_;  ///< of the current material
+  TextureUse base_, emission_, alpha_;  ///< of the current material
   std::optional<MtlMaterial> current_;
   std::string opacity_owner_;  ///< material whose d was read
 };

@@ -66,7 +66,7 @@ bool ObjFaces::parse_corner(std::string_view word, FaceCorner& corner) {
   return resolve(normal, draft_->normals.size(), "normal", corner.normal);
 }
 
-bool ObjFaces::add(std::string_view words, std::uint32_t material) {
+bool ObjFaces::add(std::string_view words, std::uint32_t material, std::uint32_t object) {
   if (++faces_since_poll_ % kFacesPerPoll == 0 && !diagnostics_->may_go_on()) return false;
   corners_.clear();
   bool complete = true;
@@ -88,10 +88,13 @@ bool ObjFaces::add(std::string_view words, std::uint32_t material) {
                              std::to_string(diagnostics_->limits().max_polygon_corners),
                          "triangulate the mesh before the export");
   }
-  if (complete) return emit(corners_, material, reader_->line());
+  if (complete) {
+    draft_->use_object(object);
+    return emit(corners_, material, reader_->line());
+  }
   const std::size_t begin = waiting_corners_.size();
   waiting_corners_.insert(waiting_corners_.end(), corners_.begin(), corners_.end());
-  waiting_.push_back({reader_->line(), material, begin, waiting_corners_.size()});
+  waiting_.push_back({reader_->line(), material, object, begin, waiting_corners_.size()});
   return true;
 }
 
@@ -113,6 +116,7 @@ bool ObjFaces::finish() {
                                 reader_->file_name(), line_text(face.line),
                                 "indices count from 1, or from -1 backwards");
     }
+    draft_->use_object(face.object);
     if (!emit(corners, face.material, face.line)) return false;
   }
   return diagnostics_->may_go_on();

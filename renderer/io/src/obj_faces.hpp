@@ -23,14 +23,14 @@ class ObjFaces {
       : reader_(&reader), diagnostics_(&diagnostics), draft_(&draft) {}
 
   /// The words of an `f` statement. Faces that refer to vertices further down wait for the end.
-  bool add(std::string_view words, std::uint32_t material);
+  bool add(std::string_view words, std::uint32_t material, std::uint32_t object);
   /// Resolves the waiting faces. Call once, after the last statement.
   bool finish();
 
  private:
   struct Waiting {
     std::uint64_t line;
-    std::uint32_t material;
+    std::uint32_t material, object;
     std::size_t begin, end;  ///< corners in waiting_corners_
   };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string_view>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace raykiln::render::io {
 namespace {
 
 constexpr std::size_t kMaxKindBytes = 80;  // of an unknown statement's first word
-constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFU;
+constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFU, kNoObject = 0xFFFFFFFFU;
 
 class ObjReader {
  public:
@@ -54,7 +55,8 @@ class ObjReader {
     if (word == "f" || word == "fo") return face(text);
     if (word == "vn") return normal(text);
     if (word == "vt") return texture_coordinate(text);
-    if (word == "g" || word == "o" || word == "s") return true;
+    if (word == "g" || word == "o") return begin_object(text, word == "o");
+    if (word == "s") return true;
     if (word == "usemtl") return use_material(text);
     if (word == "mtllib") return use_library(text);
     return other(word);
@@ -168,7 +170,26 @@ class ObjReader {
 
   bool face(std::string_view text) {
     if (material_ == kNoMaterial) material_ = draft_.materials.intern(kDefaultMaterialName);
-    return faces_.add(text, material_);
+    if (object_ == kNoObject) object_ = known_object();
+    return faces_.add(text, material_, object_);
+  }
+
+  // Groups count as objects where nothing else is said: in files that have no `o` before them.
+  bool begin_object(std::string_view text, bool is_object) {
+    if (!is_object && has_objects_) return true;
+    has_objects_ = has_objects_ || is_object;
+    object_name_ = clean_text(trimmed(text), kMaxNameBytes);
+    object_ = kNoObject;  // until there is a face: names alone take no memory
+    return true;
+  }
+
+  // A name that comes again goes on with its object.
+  std::uint32_t known_object() {
+    const auto known = object_by_name_.find(object_name_);
+    if (known != object_by_name_.end()) return known->second;
+    const std::uint32_t added = draft_.add_object(object_name_);
+    if (object_by_name_.size() < kMostObjects) object_by_name_.emplace(object_name_, added);
+    return added;
   }
 
   bool use_material(std::string_view text) {
@@ -235,6 +256,10 @@ class ObjReader {
   LineReader lines_;
   ObjFaces faces_;
   std::uint32_t material_ = kNoMaterial;
+  std::uint32_t object_ = kNoObject;
+  std::string object_name_;
+  bool has_objects_ = false;
+  std::map<std::string, std::uint32_t, std::less<>> object_by_name_;
   std::vector<std::string> libraries_;
   std::size_t library_statements_ = 0;
   std::vector<Skipped> skipped_;

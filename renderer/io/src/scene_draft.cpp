@@ -25,6 +25,19 @@ bool MaterialTable::contains(std::string_view name) const {
   return by_name_.find(name) != by_name_.end();
 }
 
+std::uint32_t SceneDraft::add_object(std::string name) {
+  if (object_names.size() < kMostObjects) object_names.push_back(std::move(name));
+  return static_cast<std::uint32_t>(object_names.size() - 1);
+}
+
+void SceneDraft::use_object(std::uint32_t object) {
+  if (!objects.empty() && objects.back().object == object) return;
+  const auto first = static_cast<std::uint32_t>(triangles.size());
+  if (!objects.empty() && objects.back().first == first) objects.pop_back();
+  if (!objects.empty() && objects.back().object == object) return;
+  objects.push_back({first, object});
+}
+
 void SceneDraft::add_triangle(const std::array<std::uint32_t, 3>& corners,
                               const std::array<std::uint32_t, 3>& corner_normal_ids,
                               std::uint32_t material) {

@@ -17,6 +17,7 @@
 namespace raykiln::render::io {
 
 inline constexpr std::size_t kMaxNameBytes = 1024;  ///< of a material's name; the rest is cut
+inline constexpr std::size_t kMostObjects = 100'000;  ///< that are told apart
 inline constexpr std::string_view kDefaultMaterialName = "default";
 
 enum class LightKind { kPoint, kSpot, kDirectional };
@@ -70,6 +71,8 @@ struct SceneDraft {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<std::uint32_t, 3>> corner_normals;  ///< empty until one has a normal
   std::vector<std::uint32_t> material_ids;
+  std::vector<ObjectRun> objects;          ///< of triangles, as in TriangleMesh
+  std::vector<std::string> object_names;
   MaterialTable materials;
   DraftTextures textures;
   std::vector<DraftLight> lights;
@@ -79,6 +82,10 @@ struct SceneDraft {
   double metres_per_unit = 1.0;
   bool single_precision = false;  ///< the file format stores positions as float
 
+  /// A new object, for use_object(); beyond kMostObjects the last one again.
+  [[nodiscard]] std::uint32_t add_object(std::string name);
+  /// Triangles that are added from here on are of this object.
+  void use_object(std::uint32_t object);
   void add_triangle(const std::array<std::uint32_t, 3>& corners,
                     const std::array<std::uint32_t, 3>& corner_normal_ids, std::uint32_t material);
 };

@@ -33,10 +33,25 @@ std::string place(const std::string& file, const std::string& where) {
   return file.empty() || where.empty() ? file + where : file + ", " + where;
 }
 
-// Its triangles were dropped, or there never were any: it cannot shine.
-void check_emitters(const Scene& scene, Findings& findings) {
+std::vector<bool> used_materials(const Scene& scene) {
   std::vector<bool> used(scene.materials.size(), false);
   for (const std::uint32_t id : scene.mesh.material_ids) used[id] = true;
+  return used;
+}
+
+// By an alpha of 0, or one below the cutoff of a mask.
+void check_coverage(const Scene& scene, Findings& findings) {
+  const std::vector<bool> used = used_materials(scene);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i] || scene.materials[i].coverage > 0.0F) continue;
+    findings.push_back({LintLevel::kWarning, "invisible_surface", "a material's alpha leaves nothing of its surfaces",
+                        "material \"" + scene.materials[i].name + '"', 1});
+  }
+}
+
+// Its triangles were dropped, or there never were any: it cannot shine.
+void check_emitters(const Scene& scene, Findings& findings) {
+  const std::vector<bool> used = used_materials(scene);
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (used[i] || scene.materials[i].emission == Rgb(0.0F)) continue;
     findings.push_back({LintLevel::kWarning, "emitter_without_area",
@@ -65,6 +80,7 @@ std::vector<LintFinding> lint(const ImportedScene& imported) {
   check_shapes(imported.scene, findings);
   check_glass(imported.scene, findings);
   check_emitters(imported.scene, findings);
+  check_coverage(imported.scene, findings);
   std::stable_sort(findings.begin(), findings.end(),
                    [](const auto& a, const auto& b) { return a.level < b.level; });
   return findings;

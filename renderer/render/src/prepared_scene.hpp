@@ -11,17 +11,19 @@ namespace raykiln::render {
 class PreparedScene {
  public:
   PreparedScene(std::shared_ptr<const Scene> scene, std::shared_ptr<const KdTree> tree)
-      : scene_(std::move(scene)), tree_(std::move(tree)), emitters_(*scene_), use_(use_of(*scene_)) {}
+      : scene_(std::move(scene)), tree_(std::move(tree)), emitters_(*scene_), pyramids_(scene_->textures.get()), use_(use_of(*scene_)) {}
 
   [[nodiscard]] const Scene& scene() const { return *scene_; }
   [[nodiscard]] const KdTree& tree() const { return *tree_; }
   [[nodiscard]] const Emitters& emitters() const { return emitters_; }
+  [[nodiscard]] const TexturePyramids& pyramids() const { return pyramids_; }
   [[nodiscard]] const SceneUse& use() const { return use_; }
 
  private:
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const KdTree> tree_;
   Emitters emitters_;
+  TexturePyramids pyramids_;
   SceneUse use_;
 };
 

@@ -67,6 +67,11 @@ std::vector<RenderNotice> render_notices(const RenderSettings& settings, const S
                            ", that of testing all " + std::to_string(tree.triangles) +
                            " triangles for every ray " + number(tree.leaf_cost)});
   }
+  if (settings.texture_reading == TextureReading::kFootprint && scene.textures != nullptr) {
+    notices.push_back({"textures_by_footprint",
+                       "textures are read as means over what a pixel covers: less noise, and a bias that no number of "
+                       "samples cures and no error bar knows, where light does not depend on them in proportion"});
+  }
   if (const std::size_t mirrors = unresolved_mirrors(settings, scene); mirrors > 0) {
     notices.push_back({"unresolved_sharp_highlight",
                        "unresolved sharp highlight: " + std::to_string(mirrors) +

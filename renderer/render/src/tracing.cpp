@@ -42,6 +42,7 @@ PathSettings path_settings(const PreparedScene& scene, const RenderSettings& set
   }
   path.emitter_sampling = settings.emitter_sampling;
   path.emitter_choice = settings.emitter_choice;
+  path.texture_reading = settings.texture_reading;
   path.bsdf.direction_sampling = settings.direction_sampling;
   path.bsdf.light = settings.light_model;
   path.traversal = settings.traversal;

@@ -4,8 +4,34 @@
 #include <cmath>
 
 #include "raykiln/math/frame.hpp"
+#include "raykiln/sampling/turn_series.hpp"
 
 namespace raykiln::render {
+namespace {
+
+struct Turn {
+  double cosine, sine;
+};
+
+/// Cosine and sine of 2 pi v, v in [0, 1], to an ulp or two, by operations that a vector unit has as well.
+Turn turn(double v) {
+  const double quarter = (4.0 * v + turn_series::kToInteger) - turn_series::kToInteger;
+  const double x = 2.0 * kPi * (v - 0.25 * quarter);
+  const double x2 = x * x;
+  double s = turn_series::kSine[0], c = turn_series::kCosine[0];
+  for (int k = 1; k < turn_series::kTerms; ++k) {
+    s = s * x2 + turn_series::kSine[k];
+    c = c * x2 + turn_series::kCosine[k];
+  }
+  s = x + x * (x2 * s);
+  c = 1.0 + x2 * c;
+  if (quarter == 1.0) return {-s, c};
+  if (quarter == 2.0) return {-c, -s};
+  if (quarter == 3.0) return {s, -c};
+  return {c, s};
+}
+
+}  // namespace
 
 double one_minus_cos(const Vec3f& a, const Vec3f& b) {
   const Vec3d difference = Vec3d(a) - Vec3d(b);
@@ -27,9 +53,9 @@ double cosine_power_pdf(double x, double exponent) {
 Vec3f around_axis(const Vec3f& axis, double x, double v) {
   const Frame frame(axis);
   const double sine = std::sqrt(x * (2.0 - x));
-  const double phi = 2.0 * kPi * v;
+  const Turn angle = turn(v);
   // In double and rounded once: at exponent 1e12 the sine is no more than a few float ulp of 1.
-  return Vec3f(sine * std::cos(phi) * Vec3d(frame.s) + sine * std::sin(phi) * Vec3d(frame.t) +
+  return Vec3f(sine * angle.cosine * Vec3d(frame.s) + sine * angle.sine * Vec3d(frame.t) +
                (1.0 - x) * Vec3d(frame.n));
 }
 

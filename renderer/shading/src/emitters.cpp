@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "raykiln/sampling/warp.hpp"
+#include "raykiln/shading/coverage.hpp"
 #include "raykiln/shading/environment_light.hpp"
 #include "raykiln/shading/texture_lookup.hpp"
+#include "triangle_span.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -13,31 +15,17 @@ double largest_channel(const Rgb& c) {
   return static_cast<double>(std::max({c.x, c.y, c.z, 0.0F}));
 }
 
-/// Normal to the triangle, as long as twice its area.
-Vec3d triangle_span(const TriangleMesh& mesh, std::uint32_t id) {
-  const auto& corner = mesh.triangles[id];
-  const Vec3d p0(mesh.positions[corner[0]]);
-  return cross(Vec3d(mesh.positions[corner[1]]) - p0, Vec3d(mesh.positions[corner[2]]) - p0);
-}
-
-double triangle_area(const TriangleMesh& mesh, std::uint32_t id) {
-  return 0.5 * length(triangle_span(mesh, id));
-}
-
-EmitterBounds bounds_of(const TriangleMesh& mesh, std::uint32_t id, double power) {
-  Bounds3f box;
-  for (const std::uint32_t corner : mesh.triangles[id]) box.grow(mesh.positions[corner]);
-  return {.lo = box.lo, .hi = box.hi, .axis = Vec3f(normalize(triangle_span(mesh, id))), .power = power};
-}
-
-/// What the emission of each material counts for, W sr^-1 m^-2: its largest channel times the mean of
-/// its texture.
+/// What the emission of each material counts for, W sr^-1 m^-2: its largest channel times the means of
+/// its texture and its coverage.
 std::vector<double> emission_weights(const Scene& scene) {
   std::vector<double> weights;
   weights.reserve(scene.materials.size());
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     weights.push_back(largest_channel(scene.materials[i].emission));
-    if (!(weights.back() > 0.0) || scene.textures == nullptr) continue;
+    if (!(weights.back() > 0.0)) continue;
+    const auto id = static_cast<std::uint32_t>(i);
+    if (has_open_parts(scene, id)) weights.back() *= mean_coverage(scene, id);
+    if (scene.textures == nullptr) continue;
     if (i >= scene.textures->materials.size()) continue;
     const TextureUse& use = scene.textures->materials[i].emission;
     if (use.used()) weights.back() *= mean_largest_channel(scene.textures->images[use.image]);
@@ -64,7 +52,7 @@ std::shared_ptr<const EnvironmentLight> environment_of(const Scene& scene) {
 
 // The density of a point: (L_max A / total) (1 / A), the area cancels.
 Emitters::Emitters(const Scene& scene) {
-  const std::vector<double> weights = emission_weights(scene);
+  std::vector<double> weights = emission_weights(scene);
   std::vector<double> power;
   for (std::uint32_t id = 0; id < scene.mesh.triangles.size(); ++id) {
     const double radiance = weights[scene.mesh.material_ids[id]];
@@ -75,15 +63,10 @@ Emitters::Emitters(const Scene& scene) {
     power.push_back(weight);
   }
   distribution_ = DiscreteDistribution(power);
-  std::vector<EmitterBounds> leaves;
-  leaves.reserve(triangles_.size());
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    leaves.push_back(bounds_of(scene.mesh, triangles_[i], power[i]));
-  }
-  tree_ = LightTree(leaves);
   if (has_triangles()) {
-    pdf_area_.reserve(scene.materials.size());
-    for (const double weight : weights) pdf_area_.push_back(weight / distribution_.total());
+    weights_ = std::move(weights);
+    tree_ = std::make_unique<TreeOnDemand>();
+    tree_bytes_ = EmitterTree::bytes(triangles_.size(), scene.mesh.triangles.size());
   }
   point_lights_ = shining(scene.point_lights, &PointLight::intensity);
   spot_lights_ = shining(scene.spot_lights, &SpotLight::intensity);
@@ -111,22 +94,18 @@ EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex) cons
   return sample;
 }
 
-EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex,
-                               const EmitterReceiver& receiver) const {
-  const auto drawn = tree_.sample(receiver, uniform(vertex, Dimension::kLightChoice));
-  if (!drawn) return {};
-  const std::uint32_t triangle = triangles_[drawn->emitter];
-  EmitterSample sample = point_on(scene, triangle, vertex);
-  sample.pdf_area = drawn->probability / triangle_area(scene.mesh, triangle);
-  return sample;
+const EmitterTree& Emitters::tree(const Scene& scene) const {
+  std::call_once(tree_->built, [&] { tree_->tree.emplace(scene.mesh, triangles_, weights_, scene.materials); });
+  return *tree_->tree;
 }
 
-double Emitters::pdf_area(const Scene& scene, std::uint32_t triangle,
-                          const EmitterReceiver& receiver) const {
-  const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
-  if (found == triangles_.end() || *found != triangle) return 0.0;
-  const auto emitter = static_cast<std::uint32_t>(found - triangles_.begin());
-  return tree_.probability(receiver, emitter) / triangle_area(scene.mesh, triangle);
+EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex,
+                               const EmitterReceiver& receiver) const {
+  const auto drawn = tree(scene).sample(receiver, uniform(vertex, Dimension::kLightChoice));
+  if (!drawn) return {};
+  EmitterSample sample = point_on(scene, drawn->triangle, vertex);
+  sample.pdf_area = drawn->pdf_area;
+  return sample;
 }
 
 }  // namespace raykiln::render

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "even_entries.hpp"
 #include "raykiln/sampling/warp.hpp"
-#include "raykiln/shading/fresnel.hpp"
 #include "raykiln/shading/ggx.hpp"
 
 namespace raykiln::render {
@@ -54,24 +53,8 @@ double lost_scale(double x, double alpha) { return 1.0 - x + alpha * alpha; }
 
 double mean_scale(double alpha) { return alpha * alpha * (1.0 - std::log(alpha)); }
 
-/// Index and fraction of a place in [0, 1] among `count` evenly spaced entries.
-struct Between {
-  std::size_t low;
-  double share;
-  Between(double place, std::size_t count) {
-    const double at = std::clamp(place, 0.0, 1.0) * static_cast<double>(count - 1);
-    low = std::min(static_cast<std::size_t>(at), count - 2);
-    share = at - static_cast<double>(low);
-  }
-  [[nodiscard]] double of(double a, double b) const { return a + share * (b - a); }
-};
-
-double node(std::size_t i, std::size_t count) {
-  return static_cast<double>(i) / static_cast<double>(count - 1);
-}
-
 /// Of cosines, closer near grazing: their places in a table are square roots.
-double square_node(std::size_t i, std::size_t count) { return node(i, count) * node(i, count); }
+double square_node(std::size_t i, std::size_t count) { return entry_place(i, count) * entry_place(i, count); }
 
 }  // namespace
 
@@ -82,7 +65,7 @@ const FacetAlbedoTables& FacetAlbedoTables::get() {
 
 FacetAlbedoTables::FacetAlbedoTables() {
   for (std::size_t r = 0; r < kRoughnesses; ++r) {
-    const double roughness = node(r, kRoughnesses);
+    const double roughness = entry_place(r, kRoughnesses);
     const double alpha = std::max(roughness * roughness, kLimitAlpha);
     for (std::size_t i = 0; i < kCosines; ++i) {
       const double x = square_node(i, kCosines);
@@ -106,7 +89,7 @@ FacetAlbedoTables::FacetAlbedoTables() {
 }
 
 double FacetAlbedoTables::interpolate(const Table& table, double x, double roughness) {
-  const Between row(roughness, kRoughnesses), column(std::sqrt(x), kCosines);
+  const BetweenEntries row(roughness, kRoughnesses), column(std::sqrt(x), kCosines);
   const auto along = [&](std::size_t r) {
     return column.of(table[r][column.low], table[r][column.low + 1]);
   };
@@ -131,7 +114,7 @@ FacetAlbedo FacetAlbedoTables::at(double cosine, double alpha) const {
 }
 
 FacetAlbedo FacetAlbedoTables::mean(double alpha) const {
-  const Between place(-std::log2(alpha) * kMeansAnOctave / static_cast<double>(kMeans - 1), kMeans);
+  const BetweenEntries place(-std::log2(alpha) * kMeansAnOctave / static_cast<double>(kMeans - 1), kMeans);
   const FacetAlbedo& a = means_[place.low];
   const FacetAlbedo& b = means_[place.low + 1];
   return {place.of(a.lost, b.lost) * mean_scale(alpha), place.of(a.grazing, b.grazing)};
@@ -145,74 +128,6 @@ double LostDirections::sample_cosine(double u) const {
 
 double LostDirections::pdf(double cosine) const {
   return cosine / (kPi * (cosine * cosine + b) * scale);
-}
-
-namespace {
-
-/// By the cosine over the span, roughness and index, from 1/3 to 3: closer to 1, where the critical angle
-/// moves fastest.
-class BorderTable {
- public:
-  static const BorderTable& get() {
-    static const BorderTable table;
-    return table;
-  }
-
-  [[nodiscard]] double passed(double cosine, double alpha, double eta) const {
-    const double x = cosine / ggx_span(cosine, alpha), ratio = (eta - 1.0) / (eta + 1.0);
-    const Between column(std::sqrt(x), kCosines), row(std::sqrt(alpha), kRoughnesses);
-    const Between index(0.5 + std::copysign(std::sqrt(0.5 * std::abs(ratio)), ratio), kIndices);
-    const auto along = [&](std::size_t k, std::size_t r) {
-      const double* from = &values_[(k * kRoughnesses + r) * kCosines + column.low];
-      return column.of(from[0], from[1]);
-    };
-    const auto plane = [&](std::size_t k) { return row.of(along(k, row.low), along(k, row.low + 1)); };
-    return index.of(plane(index.low), plane(index.low + 1));
-  }
-
- private:
-  static constexpr std::size_t kCosines = 24, kRoughnesses = 14, kIndices = 29;
-
-  BorderTable() {
-    values_.reserve(kIndices * kRoughnesses * kCosines);
-    for (std::size_t k = 0; k < kIndices; ++k) {
-      const double place = node(k, kIndices) - 0.5, ratio = 2.0 * place * std::abs(place);
-      for (std::size_t r = 0; r < kRoughnesses; ++r) {
-        const double alpha = std::max(node(r, kRoughnesses) * node(r, kRoughnesses), kLimitAlpha);
-        for (std::size_t i = 0; i < kCosines; ++i) {
-          const double x = std::max(square_node(i, kCosines), 1e-6);
-          values_.push_back(integrate(cosine_at(x, alpha), alpha, (1.0 + ratio) / (1.0 - ratio)));
-        }
-      }
-    }
-  }
-
-  static double integrate(double cosine, double alpha, double eta) {
-    const Vec3d wo = seen_under(cosine);
-    const double span = ggx_span(cosine, alpha);
-    const auto passed = [&](double to) {
-      return to > 0.0 ? ggx_passes(cosine, span, to, ggx_span(to, alpha)) : 0.0;
-    };
-    double sum = 0.0;
-    for_facets(wo, alpha, 8, 32, [&](const Vec3d& h, double weight) {
-      const double c = std::min(dot(wo, h), 1.0);
-      const FresnelTerm border = fresnel_exact(c, 1.0, eta);
-      sum += weight * border.reflectance * passed(2.0 * c * h.z - cosine);
-      if (border.total_reflection) return;
-      const double through = -refract(wo, h, c, border.cos_t, 1.0, eta).z;
-      sum += weight * (1.0 - border.reflectance) * passed(through);
-    });
-    return sum;
-  }
-
-  std::vector<double> values_;
-};
-
-}  // namespace
-
-// Away from grazing a polished border loses about alpha^2/cosine^2: less than 1e-8, and no table is needed.
-double border_albedo(double cosine, double alpha, double eta) {
-  return alpha < 1e-4 * cosine ? 1.0 : BorderTable::get().passed(cosine, alpha, eta);
 }
 
 }  // namespace raykiln::render

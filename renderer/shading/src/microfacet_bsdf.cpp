@@ -11,9 +11,6 @@
 namespace raykiln::render {
 namespace {
 
-/// Density with which light passes straight on: so large that nothing else is taken to have found it.
-constexpr double kStraightPdf = 1e30;
-
 double largest(const Rgbd& c) { return std::max({c.x, c.y, c.z, 0.0}); }
 
 /// 2 times the integral of Schlick's formula over cosine d cosine.
@@ -123,7 +120,20 @@ Facet facet_of(const MicrofacetBsdf& b, const Vec3d& h) {
   return {dot(h, b.wo), dot(across, across), up * up, up};
 }
 
-BsdfValue evaluate_far_side(const MicrofacetBsdf& b, const Vec3d& wi, double cos_i) {
+/// Light that comes diffusely through the base: as what the base reflects, it passes the facets on its
+/// way out by 1 - A_o, and on its way in by 1 - A_i.
+BsdfValue evaluate_diffuse_through(const MicrofacetBsdf& b, double cos_i) {
+  if (!(b.choice.diffuse_through > 0.0)) return {};
+  const FacetAlbedo facets = FacetAlbedoTables::get().at(std::min(cos_i, 1.0), b.alpha);
+  return {b.opaque_share * b.diffuse_through * (Rgbd(1.0) - albedo(b, facets)) * cos_i,
+          b.choice.diffuse_through * cos_i / kPi};
+}
+
+BsdfValue sum_of(const BsdfValue& a, const BsdfValue& b) {
+  return {a.f_cos + b.f_cos, a.pdf + b.pdf};
+}
+
+BsdfValue evaluate_border(const MicrofacetBsdf& b, const Vec3d& wi, double cos_i) {
   if (!(b.border_share > 0.0 && b.choice.border > 0.0)) return {};
   if (b.thin) {
     const Facet h = facet_of(b, normalize(b.wo + wi + 2.0 * cos_i * b.z));
@@ -139,21 +149,24 @@ BsdfValue evaluate_far_side(const MicrofacetBsdf& b, const Vec3d& wi, double cos
   return evaluate_refraction(b, meet(b, cos_i, h.cos_h, h.sin2, h.cos2), cos_t);
 }
 
+BsdfValue evaluate_far_side(const MicrofacetBsdf& b, const Vec3d& wi, double cos_i) {
+  return sum_of(evaluate_border(b, wi, cos_i), evaluate_diffuse_through(b, cos_i));
+}
+
 /// Picks again among what is left.
 void choose(MicrofacetBsdf& b) {
   const FacetAlbedo facets = FacetAlbedoTables::get().at(b.cos_o, b.alpha);
-  const double covered = b.opaque_share + b.border_share;
   FacetChoice c;
   c.diffuse = b.opaque_share * kPi * largest(b.diffuse);
   c.opaque = b.opaque_share * largest(b.specular * (1.0 - facets.lost - facets.grazing) +
                                       Rgbd(b.edge * facets.grazing));
   c.border = b.border_share;
   c.repeated = b.lost_o * (b.opaque_share * largest(b.repeated) + (b.thin ? b.border_share : 0.0));
-  const double sum = c.diffuse + c.opaque + c.border + c.repeated;
-  c.passes = std::max(1.0 - covered, 0.0);
-  b.black = !(sum > 0.0 || c.passes > 0.0);
-  const double scale = sum > 0.0 ? (1.0 - c.passes) / sum : 0.0;
-  b.choice = {c.passes, c.diffuse * scale, c.repeated * scale, c.opaque * scale, c.border * scale};
+  c.diffuse_through = b.opaque_share * kPi * largest(b.diffuse_through);
+  const double sum = c.diffuse + c.opaque + c.border + c.repeated + c.diffuse_through;
+  b.black = !(sum > 0.0);
+  const double scale = sum > 0.0 ? 1.0 / sum : 0.0;
+  b.choice = {c.diffuse * scale, c.repeated * scale, c.opaque * scale, c.border * scale, c.diffuse_through * scale};
 }
 
 void set_frame(MicrofacetBsdf& b, const Vec3f& ng, const Vec3f& ns, const Vec3f& wo) {
@@ -188,11 +201,16 @@ void set_energy(MicrofacetBsdf& b, const Material& material) {
   b.lost_o = here.lost;
   b.lost_mean = mean.lost;
   b.repeated = repeated_share(mean_schlick(b.specular, b.edge), mean.lost);
-  const Rgbd below = Rgbd(1.0) - albedo(b, mean), base(material.diffuse);
-  for (int c = 0; c < 3; ++c) {
-    if (!(base[c] > 0.0 && below[c] > 1e-9)) continue;
-    b.diffuse[c] = base[c] / kPi * std::max(1.0 - albedo(b, here)[c], 0.0) / below[c];
-  }
+  const Rgbd below = Rgbd(1.0) - albedo(b, mean);
+  const auto base = [&](const Rgb& colour, Rgbd& lobe) {
+    for (int c = 0; c < 3; ++c) {
+      const auto albedo_c = static_cast<double>(colour[c]);
+      if (!(albedo_c > 0.0 && below[c] > 1e-9)) continue;
+      lobe[c] = albedo_c / kPi * std::max(1.0 - albedo(b, here)[c], 0.0) / below[c];
+    }
+  };
+  base(material.diffuse, b.diffuse);
+  base(material.facets.diffuse_through, b.diffuse_through);
   if (b.border_share > 0.0 && !b.thin) b.kept = border_albedo(b.cos_o, b.alpha, b.eta_t / b.eta_o);
   if (!b.thin && b.model.light.radiance_scaling) {
     const double ratio = b.eta_o / b.eta_t;
@@ -207,7 +225,7 @@ BsdfSample finished(const MicrofacetBsdf& b, const Vec3f& wi, Lobe lobe, const B
           .weight = value.f_cos / value.pdf,
           .pdf = value.pdf,
           .lobe = lobe,
-          .radiance_scale = through && !b.thin ? b.radiance_scale : 1.0};
+          .radiance_scale = through && !b.thin && b.border_share > 0.0 ? b.radiance_scale : 1.0};
 }
 
 bool on_side(const MicrofacetBsdf& b, const Vec3f& wi, bool through) {
@@ -231,9 +249,10 @@ BsdfSample sample_facet(const MicrofacetBsdf& b, double u, double v, double side
   const Vec3f world(wi.x * b.x + wi.y * b.y + wi.z * b.z);
   if (!on_side(b, world, through)) return {};
   const Meeting m = meet(b, std::min(cos_i, 1.0), cos_h, h.x * h.x + h.y * h.y, h.z * h.z);
-  const BsdfValue value = !through  ? evaluate_same_side(b, m)
-                          : b.thin ? evaluate_behind_sheet(b, m)
-                                   : evaluate_refraction(b, m, term.cos_t);
+  BsdfValue value = !through  ? evaluate_same_side(b, m)
+                    : b.thin ? evaluate_behind_sheet(b, m)
+                             : evaluate_refraction(b, m, term.cos_t);
+  if (through) value = sum_of(value, evaluate_diffuse_through(b, m.cos_i));
   return finished(b, world, Lobe::kSpecular, value);
 }
 
@@ -251,10 +270,8 @@ MicrofacetBsdf make_microfacet_bsdf(const Material& material, const Vec3f& ng, c
   b.model = model;
   set_frame(b, ng, ns, wo);
   b.alpha = ggx_alpha(material.facets.roughness);
-  const auto covered = static_cast<double>(material.facets.coverage);
-  const auto clear = static_cast<double>(material.transparent);
-  b.opaque_share = covered * (1.0 - clear);
-  b.border_share = covered * clear;
+  b.border_share = static_cast<double>(material.transparent);
+  b.opaque_share = 1.0 - b.border_share;
   b.specular = Rgbd(material.specular);
   b.edge = static_cast<double>(material.facets.edge);
   set_border(b, material, dot(Vec3d(ng), Vec3d(wo)) >= 0.0);
@@ -279,7 +296,7 @@ BsdfValue evaluate(const MicrofacetBsdf& b, const Vec3f& wi) {
     value = evaluate_far_side(b, w, cos_i);
   }
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
-    value.pdf = (1.0 - b.choice.passes) * kUniformSpherePdf;
+    value.pdf = kUniformSpherePdf;
   }
   return value;
 }
@@ -291,9 +308,6 @@ BsdfSample sample_bsdf(const MicrofacetBsdf& b, const DirectionNumbers& numbers)
     left -= probability;
     return left < 0.0;
   };
-  if (picks(b.choice.passes)) {
-    return {.wi = Vec3f(-b.wo), .weight = Rgbd(1.0), .pdf = kStraightPdf, .lobe = Lobe::kSpecular};
-  }
   const auto [lobe, side, u, v] = numbers;
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
     const Vec3f wi = sample_uniform_sphere(u, v);
@@ -301,6 +315,9 @@ BsdfSample sample_bsdf(const MicrofacetBsdf& b, const DirectionNumbers& numbers)
   }
   if (picks(b.choice.diffuse)) {
     return sample_about(b, sample_cosine_one_minus_cos(u), v, false, Lobe::kDiffuse);
+  }
+  if (picks(b.choice.diffuse_through)) {
+    return sample_about(b, sample_cosine_one_minus_cos(u), v, true, Lobe::kDiffuse);
   }
   if (picks(b.choice.repeated)) {
     const double beyond = b.thin ? b.border_share * (1.0 - b.mean_border) : 0.0;
@@ -317,6 +334,7 @@ BsdfSample sample_bsdf(const MicrofacetBsdf& b, const VertexKey& vertex) {
 
 void leave_out(MicrofacetBsdf& b, const FacetsLeftOut& lobes) {
   if (lobes.diffuse) b.diffuse = Rgbd(0.0);
+  if (lobes.diffuse_through) b.diffuse_through = Rgbd(0.0);
   if (lobes.reflection) {
     b.specular = b.repeated = Rgbd(0.0);
     b.edge = 0.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raykiln/math/srgb.hpp"
+#include "raykiln/shading/texture_pyramid.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -19,8 +20,13 @@ std::array<float, 256> decoded_bytes() {
 
 Rgbd texel(const TextureImage& image, bool data, int x, int y) {
   static const std::array<float, 256> kDecoded = decoded_bytes();
-  const std::size_t i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                             static_cast<std::size_t>(x));
+  const std::size_t place = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                            static_cast<std::size_t>(x);
+  if (image.channels == 1) {
+    return Rgbd(image.srgb8.empty() ? static_cast<double>(image.linear[place])
+                                    : static_cast<double>(image.srgb8[place]) / 255.0);
+  }
+  const std::size_t i = 3 * place;
   if (image.srgb8.empty()) return Rgbd(image.linear[i], image.linear[i + 1], image.linear[i + 2]);
   if (data) return Rgbd(image.srgb8[i], image.srgb8[i + 1], image.srgb8[i + 2]) / 255.0;
   return Rgbd(kDecoded[image.srgb8[i]], kDecoded[image.srgb8[i + 1]], kDecoded[image.srgb8[i + 2]]);
@@ -63,6 +69,19 @@ Rgbd texture_value(const TextureImage& image, const TextureUse& use, double u, d
          t * ((1.0 - s) * at(i, j + 1) + s * at(i + 1, j + 1));
 }
 
+namespace {
+
+/// Log2 of how many texels the footprint is wide, less 1: bilinear reading of a copy has a tent two texels wide, which is
+/// as wide as the footprint then.
+double level_of(const TextureUse& use, const TextureImage& image, const std::array<Vec2f, 3>& corner, double footprint) {
+  const Vec3d first(corner[1] - corner[0], 0.0F), second(corner[2] - corner[0], 0.0F);
+  const double turn = dot(use.u_row, first) * dot(use.v_row, second) - dot(use.u_row, second) * dot(use.v_row, first);
+  const double texels = std::abs(turn) * image.width * image.height;
+  return 0.5 * std::log2(texels * footprint) - 1.0;
+}
+
+}  // namespace
+
 Rgbd texture_value(const SurfaceTextures& textures, const TextureUse& use,
                    const TrianglePlace& at) {
   const UvSet& set = textures.uv_sets[use.uv_set];
@@ -78,8 +97,30 @@ Rgbd texture_value(const SurfaceTextures& textures, const TextureUse& use,
            at.v * static_cast<double>(r);
   };
   const Vec3d uv(mix(a.x, b.x, c.x), mix(a.y, b.y, c.y), 1.0);
-  return texture_value(textures.images[use.image], use, dot(use.u_row, uv), dot(use.v_row, uv));
+  const TextureImage& image = textures.images[use.image];
+  const double x = dot(use.u_row, uv), y = dot(use.v_row, uv);
+  if (at.pyramids == nullptr) return texture_value(image, use, x, y);
+  return at.pyramids->value(use, x, y, level_of(use, image, {a, b, c}, at.footprint));
 }
+
+namespace {
+
+MetallicRoughness metal_at(const SurfaceTextures& textures, const MaterialTextures& used,
+                           const TrianglePlace& at) {
+  MetallicRoughness here = used.metal;
+  if (used.base.used()) here.base *= Rgb(texture_value(textures, used.base, at));
+  if (used.roughness.used()) {
+    const Rgbd value = texture_value(textures, used.roughness, at);
+    here.roughness *= value.y;
+    here.metallic *= static_cast<float>(value.z);
+  }
+  if (used.through.used()) {
+    here.through *= static_cast<float>(texture_value(textures, used.through, at).x);
+  }
+  return here;
+}
+
+}  // namespace
 
 // A white texel is exactly 1, and the material exactly what it is without the texture.
 void paint(const SurfaceTextures& textures, const Material& material, std::uint32_t id,
@@ -94,21 +135,20 @@ void paint(const SurfaceTextures& textures, const Material& material, std::uint3
   painted.facets = material.facets;
   if (id >= textures.materials.size()) return;
   const MaterialTextures& used = textures.materials[id];
-  if (used.roughness.used() && material.model == SurfaceModel::kMicrofacet) {
-    const Rgbd value = texture_value(textures, used.roughness, at);
-    MetallicRoughness here = used.metal;
-    if (used.base.used()) here.base *= Rgb(texture_value(textures, used.base, at));
-    here.roughness *= value.y;
-    here.metallic *= static_cast<float>(value.z);
-    mix_metal(here, painted);
+  const bool mixed = used.roughness.used() || used.through.used();
+  if (mixed && material.model == SurfaceModel::kMicrofacet) {
+    mix_metal(metal_at(textures, used, at), painted);
   } else if (used.base.used()) {
     const Rgb value(texture_value(textures, used.base, at));
     painted.diffuse *= value;
     painted.specular *= Rgb(1.0F) - used.specular_tint * (Rgb(1.0F) - value);
     painted.facets.tint *= value;
   }
+  if (used.through_colour.used()) {
+    painted.facets.diffuse_through *= Rgb(texture_value(textures, used.through_colour, at));
+  }
   if (used.emission.used()) {
-    painted.emission = Rgb(Rgbd(material.emission) * texture_value(textures, used.emission, at));
+    painted.emission = Rgb(Rgbd(material.emission) * texture_value(textures, used.emission, {at.id, at.u, at.v}));
   }
 }
 

@@ -49,6 +49,8 @@ std::vector<Knob> knobs() {
        [](Variant& v) { v.settings.light_model.radiance_scaling = false; }},
       {"pixels=centre", "one ray through the middle of each pixel: no area", {},
        [](Variant& v) { v.settings.pixel_mode = PixelMode::kCentre; }},
+      {"textures=footprint", "textures are read as means over what a pixel covers", {Effect::kTextures},
+       [](Variant& v) { v.settings.texture_reading = TextureReading::kFootprint; }},
       {"effects=all", "code for every effect, called for or not", {},
        [](Variant& v) { v.settings.effects.mode = EffectChoice::Mode::kAll; }},
       {"tree=finer", "a test costs as much as a step of the tree: smaller leaves, more memory", {},

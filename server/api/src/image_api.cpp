@@ -2,11 +2,13 @@
 #include <charconv>
 
 #include "await.hpp"
+#include "layer_picture.hpp"
 #include "query.hpp"
 #include "raykiln/api/api.hpp"
 #include "raykiln/api/etag.hpp"
 #include "raykiln/image/encode.hpp"
-#include "raykiln/image/false_colour.hpp"
+#include "raykiln/image/layers.hpp"
+#include "raykiln/scheduler/layers.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -20,11 +22,6 @@ struct ImageQuery {
   double exposure_stops = 0.0;
   std::string layer = "beauty";
 };
-
-/// Layers that are shown in false colour.
-bool is_map(const std::string& layer) {
-  return layer == "error" || layer == "samples" || layer == "seconds";
-}
 
 std::variant<ImageQuery, Problem> parse_image_query(const Request& request) {
   if (auto problem = check_query(request, {"format", "type", "exposure", "rev", "layer"})) return *problem;
@@ -46,13 +43,12 @@ std::variant<ImageQuery, Problem> parse_image_query(const Request& request) {
     return invalid_parameter("rev", "must be a revision number");
   }
   if (const auto* layer = find_value(request.query, "layer")) query.layer = *layer;
-  if (query.layer != "beauty" && !is_map(query.layer)) {
-    return invalid_parameter("layer", "must be beauty, error, samples or seconds");
-  }
+  const LayerLook look = look_of(query.layer);
+  if (look == LayerLook::kUnknown) return invalid_parameter("layer", "must be one of " + layer_choices());
   if (query.layer != "beauty" && query.half) {
     return invalid_parameter("type", "half is for layer=beauty: small errors would vanish");
   }
-  if (query.layer != "beauty") query.exposure_stops = 0.0;
+  if (look != LayerLook::kLight) query.exposure_stops = 0.0;
   return query;
 }
 
@@ -69,7 +65,7 @@ std::string image_key(const JobImage& image, const ImageQuery& query) {
 
 std::map<std::string, std::string> exr_attributes(const JobImage& image, const std::string& version) {
   const EffectReport& effects = image.effects;  // without lines in jobs of older versions
-  return {{"raykiln:scene", image.scene},
+  std::map<std::string, std::string> attributes{{"raykiln:scene", image.scene},
           {"raykiln:job", image.job},
           {"raykiln:revision", std::to_string(image.revision)},
           {"raykiln:light_model", light_model_label(image.request.light_model, image.request.light_model_overrides)},
@@ -83,6 +79,8 @@ std::map<std::string, std::string> exr_attributes(const JobImage& image, const s
           {"raykiln:seconds", shortest(image.render_seconds)},
           {"raykiln:planes", "error: standard error of the mean, radiance, NaN where unknown; samples: per pixel; seconds: of workers, per pixel"},
           {"raykiln:version", version}};
+  if (!image.request.layers.empty()) attributes["raykiln:layers"] = image.request.layers;
+  return attributes;
 }
 
 std::variant<render::Bytes, render::EncodeError> encode_half(const JobImage& image, const std::string& version) {
@@ -99,24 +97,9 @@ std::variant<render::Bytes, render::EncodeError> encode_half(const JobImage& ima
 std::vector<render::ExtraPlane> planes_of(const JobImage& image, const std::string& layer) {
   if (layer == "seconds") return {{"seconds", image.seconds}};
   if (image.error.empty()) return {};
-  return {{"error", image.error}, {"samples", image.samples}};
-}
-
-/// One value a pixel: of errors their luminance.
-std::vector<float> map_values(const JobImage& image, const std::string& layer) {
-  if (layer == "samples") return image.samples;
-  if (layer == "seconds") return image.seconds;
-  std::vector<float> values(image.error.size() / 3);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = static_cast<float>(render::luminance(
-        {image.error[3 * i], image.error[3 * i + 1], image.error[3 * i + 2]}));
-  }
-  return values;
-}
-
-render::ValueRange map_range(const std::vector<float>& values, const std::string& layer) {
-  const bool linear = layer == "samples";
-  return render::value_range(values, linear ? render::ValueScale::kLinear : render::ValueScale::kLog);
+  std::vector<render::ExtraPlane> planes{{"error", image.error}, {"samples", image.samples}};
+  for (const StoredLayer& of_job : image.layers) planes.push_back(exr_plane(of_job));
+  return planes;
 }
 
 /// What every PNG says of itself; empty: nothing to say.
@@ -138,9 +121,7 @@ Result<std::string> encode(const JobImage& image, const ImageQuery& query,
   } else if (query.layer == "beauty") {
     encoded = render::encode_png(image.image, query.exposure_stops, note, effort);
   } else {
-    const auto values = map_values(image, query.layer);
-    encoded = render::encode_png(render::false_colour(values, image.image.width, image.image.height,
-                                                      map_range(values, query.layer)), 0.0, note, effort);
+    encoded = render::encode_png(layer_picture(image, query.layer), query.exposure_stops, note, effort);
   }
   if (const auto* error = std::get_if<render::EncodeError>(&encoded)) {
     return Error{ErrorKind::kInternal, "internal", error->message, {}};
@@ -151,10 +132,21 @@ Result<std::string> encode(const JobImage& image, const ImageQuery& query,
 
 /// What the colours of a map stand for.
 void tell_range(Response& response, const JobImage& image, const std::string& layer) {
-  const auto range = map_range(map_values(image, layer), layer);
+  const auto range = layer_range(image, layer);
   response.headers.emplace_back("Raykiln-Low", shortest(range.low));
   response.headers.emplace_back("Raykiln-High", shortest(range.high));
   response.headers.emplace_back("Raykiln-Scale", std::string(name(range.scale)));
+}
+
+/// Of a job that was not asked for it, or of a picture that an older version has stored.
+Response no_layer(const JobImage& image, const std::string& layer) {
+  const auto asked = render::layer_set_of(image.request.layers).value_or(render::LayerSet());
+  const auto known = render::layer_named(layer);
+  if (known && !asked.contains(*known)) {
+    return to_response(invalid_parameter(
+        "layer", "the job does not make it: submit one with \"layers\": [\"" + layer + "\"]"));
+  }
+  return to_response(problem_of({ErrorKind::kNotFound, "image_not_ready", "there is no such layer of this picture", "layer", 1}));
 }
 
 }  // namespace
@@ -171,11 +163,7 @@ Answer Api::get_image(const Request& request) {
   });
   if (!found) return to_response(problem_of(found.error()));
   const JobImage& image = **found;
-  const std::size_t pixels = image.image.rgb.size() / 3;
-  const bool there = query.layer == "seconds" ? image.seconds.size() == pixels : image.error.size() == 3 * pixels;
-  if (query.layer != "beauty" && !there) {
-    return to_response(problem_of({ErrorKind::kNotFound, "image_not_ready", "there is no such layer of this picture", "layer", 1}));
-  }
+  if (!has_layer(image, query.layer)) return no_layer(image, query.layer);
   const std::string key = image_key(image, query);
   Response response;
   response.headers = {{"ETag", '"' + key + '"'},
@@ -186,7 +174,7 @@ Answer Api::get_image(const Request& request) {
     response.status = 304;
     return response;
   }
-  if (!query.exr && is_map(query.layer)) tell_range(response, image, query.layer);
+  if (!query.exr && look_of(query.layer) == LayerLook::kMap) tell_range(response, image, query.layer);
   const auto bytes = images_.get(key, [&] {
     const auto begun = std::chrono::steady_clock::now();
     auto encoded = encode(image, query, config_.version);

@@ -6,6 +6,7 @@
 #include "json_fields.hpp"
 #include "raykiln/api/job_json.hpp"
 #include "raykiln/base/ids.hpp"
+#include "raykiln/image/layers.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -194,6 +195,34 @@ void read_crop(FieldReader& reader, const JobLimits& limits, Errors& errors, Job
   request.crop = crop;
 }
 
+/// The layers of the list, in the renderer's order; an error at each that is unknown or named before.
+void read_layers(FieldReader& reader, Errors& errors, JobRequest& request) {
+  const json* list = reader.any("layers");
+  if (list == nullptr) return;
+  if (!list->is_array() || list->size() > render::kLayers) {
+    return reader.error("layers", "wrong_type", "must be a list of names out of " + render::all_layer_names());
+  }
+  render::LayerSet set;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const json& name = (*list)[i];
+    const auto layer = name.is_string() ? render::layer_named(name.get<std::string>()) : std::nullopt;
+    const bool twice = layer && set.contains(*layer);
+    if (layer) set.insert(*layer);
+    if ((layer && !twice) || errors.size() >= kMaxFieldErrors) continue;
+    errors.push_back({reader.pointer_to("layers").append("/").append(std::to_string(i)), "invalid_value",
+                      twice ? std::string("is named twice") : "must be one of " + render::all_layer_names()});
+  }
+  request.layers = render::layer_set_text(set);
+}
+
+std::vector<std::string> layer_names(const std::string& layers) {
+  std::vector<std::string> names;
+  for (const render::Layer layer : render::layers_in(render::layer_set_of(layers).value_or(render::LayerSet()))) {
+    names.emplace_back(render::spec(layer).name);
+  }
+  return names;
+}
+
 /// All fields of a picture but when it is done.
 void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
   if (const auto scene = reader.text("scene", {0, 100}, Need::kRequired)) {
@@ -222,6 +251,7 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
              request.direction_sampling);
   if (const auto on = reader.boolean("emitter_sampling")) request.emitter_sampling = *on;
   read_named(reader, "emitter_choice", "auto, power, tree", emitter_choice_named, request.emitter_choice);
+  read_named(reader, "texture_filter", "exact, footprint", texture_filter_named, request.texture_filter);
   read_named(reader, "sampler", "random, sobol", sampler_named, request.sampler);
   read_effects(reader, errors, request);
   read_integer(reader, "tile", {1, as_bound(limits.max_tile)}, Need::kOptional, request.tile);
@@ -231,6 +261,7 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
 void read_job(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
   read_picture(reader, limits, errors, request);
   read_stop(reader, limits, errors, request.stop, StopOf::kJob);
+  read_layers(reader, errors, request);
   request.adaptive = reader.boolean("adaptive").value_or(false);
   if (request.adaptive) request.tile = kAdaptiveTile;
   request.reuse = reader.boolean("reuse").value_or(false);
@@ -304,8 +335,10 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"filter", name(request.filter)},
           {"emitter_sampling", request.emitter_sampling},
           {"emitter_choice", name(request.emitter_choice)},
+          {"texture_filter", name(request.texture_filter)},
           {"sampler", name(request.sampler)},
           {"effects", effects_value(request.effects)},
+          {"layers", layer_names(request.layers)},
           {"tile", request.tile},
           {"priority", request.priority},
           {"adaptive", request.adaptive},
@@ -334,6 +367,7 @@ std::string quote_request_json(const JobRequest& request, double pilot_seconds) 
   auto value = job_request_value(request);
   value.erase("stop");
   value.erase("adaptive");
+  value.erase("layers");
   value.erase("reuse");
   value["pilot_seconds"] = pilot_seconds;
   return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

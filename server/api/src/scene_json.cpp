@@ -32,7 +32,8 @@ Json tree_value(const std::optional<TreeReport>& tree) {
   return {{"build_seconds", tree->build_seconds}, {"nodes", stats.nodes},
           {"leaves", stats.leaves},               {"references", stats.references},
           {"sah_cost", stats.sah_cost},           {"bytes", stats.bytes},
-          {"depth", stats.depth},                 {"budget_reached", stats.budget_reached}};
+          {"peak_bytes", stats.live_bytes_peak},  {"depth", stats.depth},
+          {"budget_reached", stats.budget_reached}};
 }
 
 Json prepare_value(const SceneView& scene) {
@@ -61,6 +62,8 @@ Json scene_value(const SceneView& scene) {
           {"dropped_triangles", report.dropped_triangles},
           {"materials", report.material_count},
           {"material_names", report.materials},
+          {"objects", report.object_count},
+          {"object_names", report.objects},
           {"lights",
            {{"point", report.point_lights},
             {"spot", report.spot_lights},

@@ -1,23 +1,16 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <iostream>
 
+#include "option_text.hpp"
 #include "raykiln/api/job_json.hpp"
 #include "raykiln/app/cli.hpp"
 #include "raykiln/effects/effect_choice.hpp"
+#include "raykiln/image/layers.hpp"
 
 namespace raykiln::server {
 namespace {
-
-/// "640x480".
-std::string read_size(const std::string& text, JobRequest& request) {
-  const auto* end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, request.width);
-  if (first.ec != std::errc{} || first.ptr == end || *first.ptr != 'x') return "--size wants WxH";
-  const auto second = std::from_chars(first.ptr + 1, end, request.height);
-  if (second.ec != std::errc{} || second.ptr != end) return "--size wants WxH";
-  return {};
-}
 
 /// Digits are an index, all else is a name.
 CameraChoice camera_choice(const std::string& text) {
@@ -49,17 +42,6 @@ void add_light_model(CLI::App& command, JobRequest& request) {
         request.light_model_overrides = *overrides;
       },
       "switches against the model, such as fresnel=schlick,roulette=false");
-}
-
-/// "0.02" or "2%".
-std::optional<double> read_error(std::string text) {
-  const bool percent = !text.empty() && text.back() == '%';
-  if (percent) text.pop_back();
-  double value = 0.0;
-  const auto* end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(text.data(), end, value);
-  if (fault != std::errc{} || stop != end) return std::nullopt;
-  return percent ? value / 100.0 : value;
 }
 
 void add_stops(CLI::App& command, JobRequest& request) {
@@ -111,16 +93,17 @@ void add_view(CLI::App& command, CliOptions& options, const char* size) {
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}))
       ->capture_default_str();
   command.add_option("--camera", options.picture.camera, "name or index of a camera of the scene");
-  command.add_option_function<std::vector<double>>(
-             "--lens",
-             [&request](const std::vector<double>& lens) {
-               if (!(lens[0] >= 0.0 && lens[1] > 0.0)) {
-                 throw CLI::ValidationError("--lens wants RADIUS,FOCUS_DISTANCE in metres, above 0");
-               }
-               request.lens = Lens{lens[0], lens[1]};
-             },
-             "RADIUS,FOCUS_DISTANCE of the camera in metres; 0,1 is a pinhole")
-      ->delimiter(',')->expected(2)->allow_extra_args(false);
+  command.add_option_function<std::string>(
+      "--lens",
+      [&request](const std::string& text) {
+        request.lens = read_lens(text);
+        if (!request.lens) {
+          throw CLI::ValidationError(
+              "--lens wants RADIUS,FOCUS_DISTANCE: two lengths in metres, the second above 0, such as 0.05,2 for what "
+              "is sharp at 2 m");
+        }
+      },
+      "RADIUS,FOCUS_DISTANCE of the camera in metres; 0,1 is a pinhole");
   command.add_option("--crop", options.picture.crop, "X,Y,W,H in pixels: this window of the picture alone")
       ->delimiter(',')->expected(4)->allow_extra_args(false);
 }
@@ -174,6 +157,8 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
             "random, or sobol: points that fill space, less noise (random)");
   add_named(command, "--emitter-choice", emitter_choice_named, request.emitter_choice,
             "power, tree, or auto: a tree from 32 emitting triangles on (auto)");
+  add_named(command, "--texture-filter", texture_filter_named, request.texture_filter,
+            "exact, or footprint: textures as means over what a pixel covers, with less noise and a bias (exact)");
   add_named(command, "--filter", filter_named, request.filter,
             "box, or blackman_harris: softer pixels (box)");
   command.add_option("--tile", request.tile, "edge of a tile in pixels; changes no pixel")
@@ -273,12 +258,34 @@ void add_adaptive(CLI::App& command, JobRequest& request) {
                    "samples go where the error is: needs --error or --seconds; marked in every output");
 }
 
+void add_layers(CLI::App& command, JobRequest& request) {
+  command.add_option_function<std::string>(
+      "--layers",
+      [&request](const std::string& text) {
+        const auto layers = render::layer_set_of(text);
+        if (!layers || layers->empty()) {
+          throw CLI::ValidationError("--layers wants names separated by commas, out of " + render::all_layer_names());
+        }
+        request.layers = render::layer_set_text(*layers);
+      },
+      "further channels of the .exr: " + render::all_layer_names());
+}
+
+/// Layers are channels of an EXR of floats: a picture that could not hold them is told before it is rendered.
+bool layers_have_a_file(const CliOptions& options) {
+  if (options.picture.request.layers.empty() || options.outputs.empty()) return true;
+  if (options.picture.half) return false;
+  return std::any_of(options.outputs.begin(), options.outputs.end(),
+                     [](const auto& output) { return output.extension() == ".exr"; });
+}
+
 void add_commands(CLI::App& app, CliOptions& options) {
   auto* render = app.add_subcommand("render", "render a scene here, without a server");
   add_picture_options(*render, options);
   add_output(*render, options, true);
   render->add_option("--threads", options.threads, "0: one a processor")->check(CLI::Range(0, 1024));
   add_adaptive(*render, options.picture.request);
+  add_layers(*render, options.picture.request);
 
   auto* effects = app.add_subcommand("effects", "list what a scene calls for, what is simulated, and why");
   add_picture_options(*effects, options);
@@ -300,6 +307,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   auto* submit = app.add_subcommand("submit", "upload a scene if the server lacks it, and submit a job");
   add_picture_options(*submit, options);
   add_adaptive(*submit, options.picture.request);
+  add_layers(*submit, options.picture.request);
   add_output(*submit, options, false);
   submit->add_flag("--wait", options.wait, "follow the job to its end (implied by -o)");
   submit->add_option("--name", options.picture.request.name, "of the job, for people");
@@ -380,6 +388,10 @@ ParsedCli parse_cli_options(int argc, const char* const* argv) {
   options.picture.request.camera = camera_choice(options.picture.camera);
   if (!apply_crop(options)) {
     std::cerr << "raykiln: --crop leaves the picture of --size\n";
+    parsed.exit_code = to_int(ExitCode::kUsage);
+  }
+  if (!layers_have_a_file(options)) {
+    std::cerr << "raykiln: --layers go into an .exr of floats: name one with -o, without --half\n";
     parsed.exit_code = to_int(ExitCode::kUsage);
   }
   for (const auto& output : options.outputs) {

@@ -10,6 +10,7 @@
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/render/render.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
+#include "raykiln/scheduler/layers.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/effects.hpp"
 #include "raykiln/workers/tile_counts.hpp"
@@ -67,7 +68,8 @@ class LocalJob {
         blocks_(render::blocks_for(request.stop.samples)),
         plan_(request.width, request.height, request.tile, block_sizes(blocks_),
               TaskLength{}),
-        film_(render::make_film(settings_)) {
+        film_(render::make_film(settings_)),
+        layers_(settings_.layers, settings_.width, settings_.height) {
     const StopRule& stop = request.stop;
     if (!stop.tile_samples.empty()) plan_.set_tile_samples(stop.tile_samples);
     if (stop.error && !adaptive_) plan_.set_limit(plan_.blocks_for(kErrorFloor));
@@ -100,6 +102,7 @@ class LocalJob {
   }
 
   [[nodiscard]] const render::Film& film() const { return film_; }
+  [[nodiscard]] const render::LayerFilm& layers() const { return layers_; }
   [[nodiscard]] const JobStatistics& statistics() const { return statistics_; }
   /// What ended it, its error, and the samples of its tiles where they differ.
   void tell(JobSnapshot& job) const {
@@ -178,7 +181,10 @@ class LocalJob {
   void fold(const TileOutcome& outcome) {
     const auto start = Steady::now();
     if (!outcome.error) {
-      for (const auto& result : outcome.results) render::merge(film_, result);
+      for (const auto& result : outcome.results) {
+        render::merge(film_, result);
+        render::merge(layers_, result);
+      }
     }
     plan_.merged(outcome.item, outcome.seconds);
     add(statistics_, outcome);
@@ -210,6 +216,7 @@ class LocalJob {
   std::vector<render::SampleBlock> blocks_;
   TilePlan plan_;
   render::Film film_;
+  render::LayerFilm layers_;
   Outbox outbox_;
   JobStatistics statistics_;
   DoneBy done_by_ = DoneBy::kNone;
@@ -259,6 +266,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   const auto errors = render::pixel_errors(job.film()).standard_error;
   for (const double e : errors) picture.error.push_back(static_cast<float>(e));
   for (const double n : job.film().plane("samples")) picture.samples.push_back(static_cast<float>(n));
+  picture.layers = resolved(&job.layers(), picture.samples);
   picture.job.request = request;
   picture.job.state = JobState::kCompleted;
   picture.job.progress = job.progress();

@@ -9,6 +9,7 @@
 #include "raykiln/app/cli.hpp"
 #include "raykiln/app/local_render.hpp"
 #include "raykiln/image/encode.hpp"
+#include "raykiln/scheduler/layers.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -24,7 +25,7 @@ ExitCode complain(const Error& error) {
 
 std::map<std::string, std::string> attributes(const LocalPicture& picture, const std::string& scene) {
   const JobSnapshot& job = picture.job;
-  return {{"raykiln:scene", scene},
+  std::map<std::string, std::string> written{{"raykiln:scene", scene},
           {"raykiln:adaptive", job.request.adaptive ? "true" : "false"},
           {"raykiln:light_model", light_model_label(job.request.light_model, job.request.light_model_overrides)},
           {"raykiln:seed", std::to_string(job.request.seed)},
@@ -35,6 +36,14 @@ std::map<std::string, std::string> attributes(const LocalPicture& picture, const
           {"raykiln:simulated", simulated_names(job.effects)},
           {"raykiln:seconds", std::to_string(job.elapsed_seconds)},
           {"raykiln:version", RAYKILN_VERSION}};
+  if (!job.request.layers.empty()) written["raykiln:layers"] = job.request.layers;
+  return written;
+}
+
+std::vector<render::ExtraPlane> planes_of(const LocalPicture& picture) {
+  std::vector<render::ExtraPlane> planes{{"error", picture.error}, {"samples", picture.samples}};
+  for (const StoredLayer& layer : picture.layers) planes.push_back(exr_plane(layer));
+  return planes;
 }
 
 std::variant<render::Bytes, render::EncodeError> exr(const CliOptions& options,
@@ -43,8 +52,7 @@ std::variant<render::Bytes, render::EncodeError> exr(const CliOptions& options,
                                                      const std::filesystem::path& output) {
   auto written = attributes(picture, scene);
   if (!options.picture.half) {
-    const std::vector<render::ExtraPlane> planes{{"error", picture.error}, {"samples", picture.samples}};
-    return render::encode_exr(picture.image, written, planes);
+    return render::encode_exr(picture.image, written, planes_of(picture));
   }
   const auto range = render::half_range(picture.image);
   written["raykiln:clamped_values"] = std::to_string(range.clamped);
@@ -114,8 +122,7 @@ std::string accuracy_line(const JobSnapshot& job) {
 }  // namespace
 
 Result<std::vector<std::uint8_t>> local_exr(const LocalPicture& picture, const std::string& scene) {
-  const std::vector<render::ExtraPlane> planes{{"error", picture.error}, {"samples", picture.samples}};
-  auto encoded = render::encode_exr(picture.image, attributes(picture, scene), planes);
+  auto encoded = render::encode_exr(picture.image, attributes(picture, scene), planes_of(picture));
   if (const auto* failure = std::get_if<render::EncodeError>(&encoded)) {
     return Error{ErrorKind::kInternal, "internal", failure->message, ""};
   }

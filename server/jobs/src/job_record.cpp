@@ -200,6 +200,8 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   if (q.adaptive) r.integer("adaptive", 1);
   if (q.filter != JobRequest{}.filter) r.text("filter", name(q.filter));
   if (q.emitter_choice != JobRequest{}.emitter_choice) r.text("emitter_choice", name(q.emitter_choice));
+  if (q.texture_filter != JobRequest{}.texture_filter) r.text("texture_filter", name(q.texture_filter));
+  if (!q.layers.empty()) r.text("layers", q.layers);
   write_lens_and_crop(r, q);
   if (q.reuse) r.integer("reuse", 1);
 }
@@ -231,6 +233,8 @@ JobRequest read_request(const RecordReader& r) {
   q.adaptive = r.integer("adaptive") != 0;
   q.filter = filter_named(r.text("filter")).value_or(q.filter);
   q.emitter_choice = emitter_choice_named(r.text("emitter_choice")).value_or(q.emitter_choice);
+  q.texture_filter = texture_filter_named(r.text("texture_filter")).value_or(q.texture_filter);
+  q.layers = r.text("layers");
   read_lens_and_crop(r, q);
   q.reuse = r.integer("reuse") != 0;
   return q;

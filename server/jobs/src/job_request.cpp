@@ -189,6 +189,10 @@ std::string_view name(EmitterChoice value) {
   return "auto";
 }
 
+std::string_view name(TextureFilter value) {
+  return value == TextureFilter::kExact ? "exact" : "footprint";
+}
+
 std::optional<PixelMode> pixel_mode_named(std::string_view text) {
   if (text == "random") return PixelMode::kRandom;
   if (text == "centre") return PixelMode::kCentre;
@@ -215,6 +219,13 @@ std::optional<PixelFilter> filter_named(std::string_view text) {
 
 std::optional<EmitterChoice> emitter_choice_named(std::string_view text) {
   for (const auto value : {EmitterChoice::kAuto, EmitterChoice::kPower, EmitterChoice::kTree}) {
+    if (name(value) == text) return value;
+  }
+  return std::nullopt;
+}
+
+std::optional<TextureFilter> texture_filter_named(std::string_view text) {
+  for (const auto value : {TextureFilter::kExact, TextureFilter::kFootprint}) {
     if (name(value) == text) return value;
   }
   return std::nullopt;

@@ -36,7 +36,7 @@ bool target_met(const StopRule& rule, const PictureError& error) {
 }
 
 std::uint64_t next_decision(std::uint64_t samples) {
-  return std::max(kErrorFloor, samples + (samples + 9) / 10);
+  return std::max(kErrorFloor, samples + (samples + 19) / 20);
 }
 
 double target_fraction(const StopRule& rule, const PictureError& error) {

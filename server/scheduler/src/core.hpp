@@ -21,6 +21,22 @@
 
 namespace raykiln::server {
 
+/// What a job renders into: empty, or what another job has left.
+struct Canvas {
+  std::shared_ptr<render::Film> film;
+  std::shared_ptr<render::LayerFilm> layers;  ///< null where none is asked for
+  render::Image picture;
+  std::vector<float> pixel_seconds;
+  std::optional<KeptFilm> earlier;  ///< the job that it goes on from; film, layers and seconds of that are the ones above
+};
+
+/// A picture that is made strip by strip beside its rendering, and who waits for it.
+struct Gathering {
+  std::shared_ptr<JobImage> image;
+  int rows = 0;  ///< that are in it
+  std::vector<Reply<JobImagePtr>> waiting;
+};
+
 /// A job that has not ended.
 struct LiveJob {
   JobSnapshot snapshot;
@@ -33,6 +49,7 @@ struct LiveJob {
   render::RenderSettings settings;
   std::vector<render::SampleBlock> blocks;
   std::shared_ptr<render::Film> film;  ///< shared with what stores it, once nothing is merged any more
+  std::shared_ptr<render::LayerFilm> layers;  ///< beside the film; null where none is asked for
   render::Image picture;  ///< of the film as it is: kept up to date tile by tile
   std::optional<TilePlan> plan;
   std::stop_source stop;
@@ -49,11 +66,14 @@ struct LiveJob {
   bool deciding = false;    ///< the film is being judged, and nothing of it is in flight
   double measure_at = 0.0;  ///< render seconds from which it is judged anew
   std::vector<float> pixel_seconds;  ///< of workers
+  std::shared_ptr<Gathering> gathering;  ///< of its layers, while they are; null else
 
   // On its way to a final state.
   std::optional<JobEvent> ending{};
   std::optional<Error> ending_error{};
   bool archiving = false;
+  JobImagePtr last_picture;  ///< from `archiving` on, in place of `picture`
+  bool stored_later = false;  ///< its picture and film are in use beyond its end
 };
 
 class Scheduler::Core {
@@ -109,6 +129,8 @@ class Scheduler::Core {
   void start_preparing(LiveJob& job);
   void prepared(const JobId& id, Result<ReadyScene> scene);
   void start_rendering(LiveJob& job, ReadyScene scene);
+  void canvas_ready(const JobId& id, const std::shared_ptr<Canvas>& canvas);
+  void begin_rendering(LiveJob& job, Canvas& canvas);
   void look_for_missing_light(const JobId& id, const render::RenderSettings& settings,
                               std::shared_ptr<const render::PreparedScene> scene);
   void dispatch();
@@ -117,14 +139,19 @@ class Scheduler::Core {
   void merge_outcome(LiveJob& job, const TileOutcome& outcome);
   void count_idle(LiveJob& job, const TileOutcome& outcome);
   void task_failed(LiveJob& job, const TileOutcome& outcome);
+
+  // core_ending.cpp
+  [[nodiscard]] bool is_large(const LiveJob& job) const;
   void begin_ending(LiveJob& job, JobEvent event, std::optional<Error> error);
   void archive_if_drained(LiveJob& job);
-  void archived(const JobId& id, const Status& saved, JobImagePtr image,
+  void end_at_once(LiveJob& job);
+  void archived(const JobId& id, const Status& saved, const std::shared_ptr<JobImage>& image,
                 std::optional<PictureError> error);
+  void picture_lost(const JobId& id);
 
   // core_extend.cpp
   [[nodiscard]] Result<SubmitJob> extended(ExtendJob extension);
-  void go_on_from(LiveJob& job, KeptFilm kept);
+  void go_on_from(LiveJob& job, KeptFilm kept);  ///< all but what is in the canvas
   void keep_film(LiveJob& job, const JobImage& image);
 
   // core_accuracy.cpp
@@ -148,9 +175,17 @@ class Scheduler::Core {
 
   // core_images.cpp
   [[nodiscard]] JobImagePtr resolve(LiveJob& job, bool layers);
+  [[nodiscard]] std::shared_ptr<JobImage> last_picture_of(LiveJob& job);
+  void image_when_stored(const JobId& id, const std::string& layer, const Reply<JobImagePtr>& reply);
   void remember(JobImagePtr image);
   [[nodiscard]] JobImagePtr remembered(const JobId& id, std::uint64_t revision, bool layers) const;
   void load_image(const JobSnapshot& job, const Reply<JobImagePtr>& reply);
+
+  // core_layers.cpp
+  void gather_layers(LiveJob& job, std::shared_ptr<JobImage> image, const Reply<JobImagePtr>& reply);
+  void gather_strip(const std::shared_ptr<Gathering>& gathering);
+  void gathered(const std::shared_ptr<Gathering>& gathering, bool whole);
+  void not_gathered(const std::shared_ptr<Gathering>& gathering);
 
   // core_scenes.cpp
   [[nodiscard]] SceneView view(SceneRecord record) const;
@@ -160,6 +195,11 @@ class Scheduler::Core {
                     const AddSceneOptions& options, const Reply<AddedScene>& reply);
 
   [[nodiscard]] LiveJob* find(const JobId& id);
+  /// To give back the memory of a large film takes a tenth of a second: where it holds up nobody.
+  template <typename Film>
+  void let_go(Film held) {
+    disk_.post([held = std::move(held)] {});
+  }
 
   const Config config_;
   Parts parts_;

@@ -55,7 +55,7 @@ void Scheduler::Core::rest(LiveJob& job) {
   if (job.plan->closed()) return finish(job, DoneBy::kSeconds);
   refresh(job);
   const JobStatistics& then = job.snapshot.statistics;
-  if (job.settings.width * job.settings.height <= parts_.judged_at_once_px) {
+  if (!is_large(job)) {
     const SteadyTime begin = parts_.clock.steady();
     auto decision = decide(*job.film, job.snapshot.request);
     return decided(job, std::move(decision), seconds_between(begin, parts_.clock.steady()), then);

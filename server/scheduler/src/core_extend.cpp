@@ -43,7 +43,7 @@ void Scheduler::Core::extend(ExtendJob extension, const Reply<SubmittedJob>& rep
   submit(std::move(*submission), reply);
 }
 
-/// Film, picture, times and curve of the earlier job; its plan is resumed by begin_stops().
+/// Times and curve of the earlier job, whose film and picture are there; its plan is resumed by begin_stops().
 void Scheduler::Core::go_on_from(LiveJob& job, KeptFilm kept) {
   JobSnapshot& s = job.snapshot;
   const auto prepared = s.statistics;
@@ -54,9 +54,6 @@ void Scheduler::Core::go_on_from(LiveJob& job, KeptFilm kept) {
   s.forecasts = std::move(kept.job.forecasts);
   s.accuracy = std::move(kept.job.accuracy);
   job.seconds_before = s.statistics.render_seconds;
-  job.film = std::move(kept.film);
-  job.picture = job.film->resolve();
-  job.pixel_seconds = std::move(kept.pixel_seconds);
   job.plan->resume(kept.tile_samples);
   s.continued_samples = static_cast<double>(job.plan->samples_done()) / (double{1} * s.request.width * s.request.height);
   job.new_samples = true;
@@ -66,7 +63,8 @@ void Scheduler::Core::go_on_from(LiveJob& job, KeptFilm kept) {
 /// which is rendered anew: all that is judged is then what a whole job would judge.
 void Scheduler::Core::keep_film(LiveJob& job, const JobImage& image) {
   job.film->drop_incomplete();
-  kept_.keep({job.snapshot, job.film, job.plan->tile_samples(), image.seconds});
+  if (job.layers) job.layers->drop_incomplete();
+  let_go(kept_.keep({job.snapshot, job.film, job.plan->tile_samples(), image.seconds, job.layers}));
 }
 
 }  // namespace raykiln::server

@@ -30,8 +30,15 @@ JobImagePtr Scheduler::Core::resolve(LiveJob& job, bool layers) {
   const SteadyTime begin = parts_.clock.steady();
   auto image = framed(job.snapshot);
   image->image = job.picture;
-  if (layers) add_layers(*image, *job.film, job.pixel_seconds);
+  if (layers) add_layers(*image, *job.film, job.layers.get(), job.pixel_seconds);
   job.snapshot.statistics.publish_seconds += seconds_between(begin, parts_.clock.steady());
+  return image;
+}
+
+/// Nothing is merged any more: the picture itself, not a copy, which would take a tenth of a second.
+std::shared_ptr<JobImage> Scheduler::Core::last_picture_of(LiveJob& job) {
+  auto image = framed(job.snapshot);
+  image->image = std::move(job.picture);
   return image;
 }
 
@@ -62,10 +69,19 @@ void Scheduler::Core::image(const JobId& id, const std::string& layer,
   if (auto known = remembered(id, snapshot->image_revision, layers)) return reply(std::move(known));
   LiveJob* job = find(id);
   if (job == nullptr) return load_image(*snapshot, reply);
+  if (job->last_picture) return layers ? image_when_stored(id, layer, reply) : reply(job->last_picture);
   if (!job->film) return reply(image_not_ready());
+  if (layers && is_large(*job) && !job->layers) return gather_layers(*job, framed(*snapshot), reply);
   JobImagePtr fresh = resolve(*job, layers);
   remember(fresh);
   reply(std::move(fresh));
+}
+
+/// Asked again behind what the disk does for the job by now.
+void Scheduler::Core::image_when_stored(const JobId& id, const std::string& layer, const Reply<JobImagePtr>& reply) {
+  disk_.post([this, id, layer, reply] {
+    post([this, id, layer, reply] { image(id, layer, reply); });
+  });
 }
 
 void Scheduler::Core::load_image(const JobSnapshot& job, const Reply<JobImagePtr>& reply) {
@@ -77,6 +93,7 @@ void Scheduler::Core::load_image(const JobSnapshot& job, const Reply<JobImagePtr
     image->error = std::move(stored->error);
     image->samples = std::move(stored->samples);
     image->seconds = std::move(stored->seconds);
+    image->layers = std::move(stored->layers);
     strand_->post([this, image] { remember(image); });
     reply(JobImagePtr(image));
   });

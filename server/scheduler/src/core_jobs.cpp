@@ -88,7 +88,8 @@ Status Scheduler::Core::check_resources(const JobRequest& request) {
   const std::uint64_t bytes = film_memory(request);
   if (bytes > config_.scheduler.max_film_bytes) {
     return Error{ErrorKind::kTooLarge, "film_too_large",
-                 "the picture needs " + std::to_string(bytes) + " bytes, " +
+                 (request.layers.empty() ? "the picture needs " : "the picture and its layers need ") +
+                     std::to_string(bytes) + " bytes, " +
                      std::to_string(config_.scheduler.max_film_bytes) + " are allowed",
                  "/width"};
   }

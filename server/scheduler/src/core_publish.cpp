@@ -96,7 +96,7 @@ void Scheduler::Core::leave(LiveJob& job) {
   shares_.leave(id);
   if (job.snapshot.started) {
     --active_;
-    active_film_bytes_ -= job.snapshot.statistics.film_bytes;
+    if (!job.stored_later) active_film_bytes_ -= job.snapshot.statistics.film_bytes;
     const double seconds = job.snapshot.elapsed_seconds;
     mean_job_seconds_ = mean_job_seconds_ > 0.0 ? 0.7 * mean_job_seconds_ + 0.3 * seconds : seconds;
   }
@@ -107,6 +107,8 @@ void Scheduler::Core::leave(LiveJob& job) {
   active_gauge_.set(static_cast<double>(active_));
   job.ticket.reset();
   job.stop.request_stop();
+  if (job.film) let_go(std::move(job.film));
+  if (job.layers) let_go(std::move(job.layers));
   live_.erase(id);
   note_busy();
   if (auto pruned = parts_.store.prune_jobs(config_.scheduler.max_kept_jobs); !pruned) {

@@ -1,11 +1,9 @@
 // From the queue to the last sample.
 #include <algorithm>
-#include <limits>
 #include <new>
+#include <utility>
 
 #include "core.hpp"
-#include "image_layers.hpp"
-#include "raykiln/scheduler/judge_picture.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/effects.hpp"
 #include "raykiln/workers/tile_counts.hpp"
@@ -31,6 +29,28 @@ std::vector<std::uint32_t> samples_of(const std::vector<render::SampleBlock>& bl
 std::uint64_t rays_in(const render::TileResult& r) {
   return r.stats.camera_rays + r.stats.bounce_rays + r.stats.shadow_rays;
 }
+
+/// Some 200 bytes a pixel: half a second for the largest films, and a tenth to read what another job has left.
+Canvas canvas_of(const JobRequest& request, std::optional<KeptFilm> earlier) {
+  Canvas canvas;
+  if (earlier) {
+    canvas.film = std::move(earlier->film);
+    canvas.layers = std::move(earlier->layers);
+    canvas.picture = canvas.film->resolve();
+    canvas.pixel_seconds = std::move(earlier->pixel_seconds);
+    canvas.earlier = std::move(earlier);
+    return canvas;
+  }
+  const auto pixels = static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height);
+  canvas.film = std::make_shared<render::Film>(request.width, request.height, render::sample_relation(sampler_of(request)));
+  const auto layers = render::layer_set_of(request.layers).value_or(render::LayerSet());
+  if (!layers.empty()) canvas.layers = std::make_shared<render::LayerFilm>(layers, request.width, request.height);
+  canvas.picture = {request.width, request.height, std::vector<float>(3 * pixels)};
+  canvas.pixel_seconds.assign(pixels, 0.0F);
+  return canvas;
+}
+
+Error no_memory() { return {ErrorKind::kInternal, "render_failed", "no memory for the film", ""}; }
 
 /// A task's time, spread evenly over its pixels.
 void add_pixel_seconds(std::vector<float>& seconds, int width, const TileOutcome& outcome) {
@@ -69,7 +89,7 @@ bool Scheduler::Core::start_next_job() {
   if (queue_.empty()) return false;
   LiveJob& job = *find(queue_.front());
   const std::uint64_t bytes = film_memory(job.snapshot.request);
-  if (active_ > 0 && active_film_bytes_ + bytes > config_.scheduler.max_film_bytes) return false;
+  if (active_film_bytes_ > 0 && active_film_bytes_ + bytes > config_.scheduler.max_film_bytes) return false;
   ++active_;
   active_film_bytes_ += bytes;
   active_gauge_.set(static_cast<double>(active_));
@@ -111,10 +131,10 @@ void Scheduler::Core::prepared(const JobId& id, Result<ReadyScene> scene) {
     start_rendering(*job, std::move(*scene));
   } catch (const std::bad_alloc&) {
     job->film.reset();
+    job->layers.reset();
     job->picture = {};
     job->plan.reset();
-    transition(*job, JobEvent::kFail,
-               Error{ErrorKind::kInternal, "render_failed", "no memory for the film", ""});
+    transition(*job, JobEvent::kFail, no_memory());
   }
   pump();
 }
@@ -132,19 +152,42 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
   job.scene = std::move(scene);
   job.blocks = render::blocks_for(s.request.stop.samples);
+  auto earlier = s.continues.empty() ? std::nullopt : kept_.take(s.continues);
+  if (!is_large(job)) {
+    Canvas canvas = canvas_of(s.request, std::move(earlier));
+    return begin_rendering(job, canvas);
+  }
+  auto held = std::make_shared<std::optional<KeptFilm>>(std::move(earlier));
+  disk_.post([this, id = s.id, request = s.request, held] {
+    std::shared_ptr<Canvas> canvas;
+    try {
+      canvas = std::make_shared<Canvas>(canvas_of(request, std::move(*held)));
+    } catch (const std::bad_alloc&) {
+      parts_.log.error("no_memory_for_film", {{"job", id}});
+    }
+    post([this, id, canvas] { canvas_ready(id, canvas); });
+  });
+}
+
+/// The job may be gone by now, and then its film goes as it came.
+void Scheduler::Core::canvas_ready(const JobId& id, const std::shared_ptr<Canvas>& canvas) {
+  LiveJob* job = find(id);
+  if (job == nullptr || job->snapshot.state != JobState::kPreparing || halted_) return let_go(canvas);
+  if (canvas) begin_rendering(*job, *canvas);
+  else transition(*job, JobEvent::kFail, no_memory());
+  pump();
+}
+
+void Scheduler::Core::begin_rendering(LiveJob& job, Canvas& canvas) {
+  JobSnapshot& s = job.snapshot;
   job.plan.emplace(s.request.width, s.request.height, s.request.tile, samples_of(job.blocks),
                    task_length(config_.scheduler));
   if (!s.request.stop.tile_samples.empty()) job.plan->set_tile_samples(s.request.stop.tile_samples);
-  auto kept = s.continues.empty() ? std::nullopt : kept_.take(s.continues);
-  if (kept) {
-    go_on_from(job, std::move(*kept));
-  } else {
-    const auto pixels = static_cast<std::size_t>(s.request.width) * static_cast<std::size_t>(s.request.height);
-    job.film = std::make_shared<render::Film>(s.request.width, s.request.height,
-                                              render::sample_relation(sampler_of(s.request)));
-    job.picture = {s.request.width, s.request.height, std::vector<float>(3 * pixels)};
-    job.pixel_seconds.assign(pixels, 0.0F);
-  }
+  job.film = std::move(canvas.film);
+  job.layers = std::move(canvas.layers);
+  job.picture = std::move(canvas.picture);
+  job.pixel_seconds = std::move(canvas.pixel_seconds);
+  if (canvas.earlier) go_on_from(job, std::move(*canvas.earlier));
   job.render_since = parts_.clock.steady();
   s.statistics.prepare_seconds = seconds_between(job.active_since, job.render_since);
   s.prepare = {};
@@ -240,6 +283,7 @@ void Scheduler::Core::merge_outcome(LiveJob& job, const TileOutcome& outcome) {
   add_pixel_seconds(job.pixel_seconds, job.settings.width, outcome);
   for (const render::TileResult& result : outcome.results) {
     render::merge(*job.film, result);
+    if (job.layers) render::merge(*job.layers, result);
     job.film->resolve(result.rect, job.picture);
     add_counts(statistics, result);
     rays_.add(static_cast<double>(rays_in(result)));
@@ -272,83 +316,6 @@ void Scheduler::Core::task_failed(LiveJob& job, const TileOutcome& outcome) {
                      reason.message + " (after " + std::to_string(outcome.item.attempt) +
                          " attempts)",
                      ""});
-}
-
-/// From here on nothing is merged. The state follows when no task is in flight and the picture stored.
-void Scheduler::Core::begin_ending(LiveJob& job, JobEvent event, std::optional<Error> error) {
-  refresh(job);
-  if (event == JobEvent::kRendered && live_.size() == 1) {
-    // Workers that had nothing left to do while the last tasks ran.
-    const SteadyTime now = parts_.clock.steady();
-    for (const auto& entry : worker_free_since_) {
-      const double idle = seconds_between(std::max(entry.second, job.render_since), now);
-      if (idle > 0.0) job.snapshot.statistics.idle_seconds += idle;
-    }
-  }
-  job.ending = event;
-  job.ending_error = std::move(error);
-  job.stop.request_stop();
-  job.plan->abandon();
-  archive_if_drained(job);
-}
-
-void Scheduler::Core::archive_if_drained(LiveJob& job) {
-  if (job.in_flight > 0 || job.archiving) return;
-  job.archiving = true;
-  const JobId id = job.snapshot.id;
-  if (job.snapshot.progress.samples_done == 0) return archived(id, success(), nullptr, std::nullopt);
-  const JobImagePtr beauty = resolve(job, false);
-  // Nothing is merged any more: the film is read, and its error judged, where it holds up nobody.
-  // Who cancels does not wait: a large picture is looked at, not judged in full.
-  const bool in_full = *job.ending != JobEvent::kDrained || job.settings.width * job.settings.height <= parts_.judged_at_once_px;
-  disk_.post([this, id, beauty, in_full, film = std::shared_ptr<const render::Film>(job.film),
-              seconds = std::move(job.pixel_seconds),
-              samples_area = job.snapshot.request.pixel_mode == PixelMode::kRandom] {
-    Status saved = success();
-    std::optional<PictureError> error;
-    auto image = std::make_shared<JobImage>(*beauty);
-    try {
-      error = in_full ? judge_picture(*film, samples_area) : look_at_picture(*film, samples_area);
-      add_layers(*image, *film, seconds);
-      const auto& picture = image->image;
-      saved = parts_.store.put_image(id, {picture.width, picture.height, picture.rgb, image->error,
-                                          image->samples, image->seconds});
-    } catch (const std::exception& fault) {
-      saved = Error{ErrorKind::kInternal, "internal", fault.what(), ""};
-    }
-    post([this, id, saved, image, error] { archived(id, saved, image, error); });
-  });
-}
-
-void Scheduler::Core::archived(const JobId& id, const Status& saved, JobImagePtr image,
-                               std::optional<PictureError> found) {
-  LiveJob* job = find(id);
-  if (job == nullptr) return;
-  if (found) note_error(*job, std::move(*found), job->snapshot.statistics);
-  JobEvent event = *job->ending;
-  auto error = std::move(job->ending_error);
-  if (!saved) {
-    parts_.log.error("image_not_stored", {{"job", id}, {"why", saved.error().message}});
-    // A picture that would be gone after a restart is not a completed job.
-    if (event == JobEvent::kRendered) {
-      event = JobEvent::kFail;
-      error = saved.error();
-    }
-    image.reset();
-    job->film.reset();  // else the final state would name a picture that nobody keeps
-    job->snapshot.image_revision = 0;
-  }
-  if (image) {
-    auto last = std::make_shared<JobImage>(*image);
-    last->revision = job->snapshot.revision + 1;
-    last->is_final = true;
-    last->samples_per_pixel = job->snapshot.progress.samples_per_pixel;
-    last->render_seconds = job->snapshot.statistics.render_seconds;
-    remember(std::move(last));
-  }
-  if (image && event == JobEvent::kRendered) keep_film(*job, *image);
-  transition(*job, event, std::move(error));
-  pump();
 }
 
 }  // namespace raykiln::server

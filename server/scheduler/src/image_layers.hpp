@@ -7,7 +7,8 @@
 
 namespace raykiln::server {
 
-/// Fills error, samples and seconds. `seconds`: of workers, one a pixel.
-void add_layers(JobImage& image, const render::Film& film, const std::vector<float>& seconds);
+/// Fills error, samples, seconds and layers. `seconds`: of workers, one a pixel. `layers`: null for none.
+void add_layers(JobImage& image, const render::Film& film, const render::LayerFilm* layers,
+                const std::vector<float>& seconds);
 
 }  // namespace raykiln::server

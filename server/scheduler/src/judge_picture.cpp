@@ -1,5 +1,8 @@
 #include "raykiln/scheduler/judge_picture.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "raykiln/accuracy/allocation.hpp"
 #include "raykiln/accuracy/image_error.hpp"
 
@@ -10,6 +13,9 @@ static_assert(kErrorFloor == render::kSampleFloor);
 static_assert(kAdaptiveTile == render::kCellSide);
 
 constexpr std::uint64_t kLargestBlock = 16;  ///< samples
+/// Steps of adaptive jobs, as a ratio of samples: small near the target, larger far from it, where a decision costs
+/// as much and says nothing new. Small enough for what a cell is given not to hang on one noisy estimate.
+constexpr double kLeastStep = 1.05, kMostStep = 1.25;
 
 ErrorFigure figure(const render::Figure& f) { return {f.value, f.low, f.high}; }
 
@@ -35,8 +41,11 @@ PictureError judge_picture(const render::Film& film, bool samples_area) {
 Decision decide(const render::Film& film, const JobRequest& request) {
   Decision decision{judge_picture(film, request.pixel_mode == PixelMode::kRandom), {}};
   if (!request.adaptive || target_met(request.stop, decision.error)) return decision;
-  // A tenth more samples than the picture has, where they help most; more if that moves no cell by a block.
-  auto mean = static_cast<std::uint64_t>(decision.error.mean_samples);
+  // As many samples as are expected to reach the target, within bounds, where they help most; more if that moves no
+  // cell by a block.
+  const double ahead = request.stop.error ? decision.error.error.high / *request.stop.error : kMostStep;
+  const double step = std::clamp(ahead * ahead, kLeastStep, kMostStep);
+  auto mean = static_cast<std::uint64_t>(std::ceil(step * decision.error.mean_samples));
   const auto there = render::cell_samples(film);
   const auto moves = [&] {
     for (std::size_t i = 0; i < there.size(); ++i) {
@@ -45,11 +54,11 @@ Decision decide(const render::Film& film, const JobRequest& request) {
     }
     return false;
   };
-  do {
-    mean = next_decision(mean);
+  while (true) {
     decision.samples = render::allocate_samples(film, static_cast<double>(mean), request.stop.samples);
-  } while (!moves() && mean < request.stop.samples);
-  return decision;
+    if (moves() || mean >= request.stop.samples) return decision;
+    mean = next_decision(mean);
+  }
 }
 
 void mark_adaptive(PictureError& error, const JobRequest& request) {

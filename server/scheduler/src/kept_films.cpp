@@ -10,14 +10,19 @@ std::uint64_t bytes_of(const KeptFilm& kept) { return kept.job.statistics.film_b
 
 }  // namespace
 
-void KeptFilms::keep(KeptFilm film) {
-  if (bytes_of(film) > max_bytes_) return;
+std::list<KeptFilm> KeptFilms::keep(KeptFilm film) {
+  std::list<KeptFilm> gone;
+  if (bytes_of(film) > max_bytes_) {
+    gone.push_back(std::move(film));
+    return gone;
+  }
   bytes_ += bytes_of(film);
   films_.push_back(std::move(film));
   while (bytes_ > max_bytes_) {
     bytes_ -= bytes_of(films_.front());
-    films_.pop_front();
+    gone.splice(gone.end(), films_, films_.begin());
   }
+  return gone;
 }
 
 std::optional<KeptFilm> KeptFilms::take(const JobId& job) {

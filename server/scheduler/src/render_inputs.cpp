@@ -137,7 +137,9 @@ std::uint64_t film_memory(const JobRequest& request) {
   const std::uint64_t picture = std::uint64_t{4 * sizeof(float)} *
                                 static_cast<std::uint64_t>(request.width) *
                                 static_cast<std::uint64_t>(request.height);
-  return film > UINT64_MAX - picture ? UINT64_MAX : film + picture;
+  const std::uint64_t layers = render::LayerFilm::bytes_per_pixel(render::layer_set_of(request.layers).value_or(render::LayerSet())) *
+                               static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height);
+  return film > UINT64_MAX - picture - layers ? UINT64_MAX : film + picture + layers;
 }
 
 Status check_camera(const CameraChoice& choice, const SceneReport& report) {
@@ -180,6 +182,8 @@ Result<render::RenderSettings> render_settings(const JobRequest& request,
                                     : render::DirectionSampling::kUniformSphere;
   settings.emitter_sampling = request.emitter_sampling;
   settings.emitter_choice = emitter_choice_of(request);
+  settings.texture_reading = request.texture_filter == TextureFilter::kExact ? render::TextureReading::kExact
+                                                                             : render::TextureReading::kFootprint;
   settings.sampler = sampler_of(request);
   const auto effects = render::effect_choice_of(request.effects);
   if (!effects) {
@@ -187,6 +191,9 @@ Result<render::RenderSettings> render_settings(const JobRequest& request,
     return Error{ErrorKind::kInvalid, "invalid_request", "there is no such effect", "/effects"};
   }
   settings.effects = *effects;
+  const auto layers = render::layer_set_of(request.layers);
+  if (!layers) return Error{ErrorKind::kInvalid, "invalid_request", "there is no such layer", "/layers"};
+  settings.layers = *layers;
   if (const auto wrong = render::settings_error(settings, scene)) {
     return Error{ErrorKind::kInvalid, "invalid_request", *wrong, ""};
   }

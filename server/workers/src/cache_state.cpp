@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 
+#include "raykiln/render/prepared_bytes.hpp"
 #include "raykiln/scene/environment_map.hpp"
 #include "raykiln/scene/surface_textures.hpp"
 
@@ -40,6 +41,7 @@ std::uint64_t bytes_of(const render::Scene& scene) {
          mesh.material_ids.size() * sizeof(mesh.material_ids[0]) +
          mesh.normals.size() * sizeof(render::Vec3f) +
          mesh.corner_normals.size() * sizeof(mesh.corner_normals[0]) +
+         mesh.objects.size() * sizeof(render::ObjectRun) + scene.object_names.size() * sizeof(std::string) +
          scene.materials.size() * sizeof(render::Material) +
          scene.point_lights.size() * sizeof(render::PointLight) +
          scene.spot_lights.size() * sizeof(render::SpotLight) +
@@ -192,7 +194,7 @@ Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight)
   const std::scoped_lock lock(mutex);
   // Another scene may have driven the tree out meanwhile: what is kept is counted with all it holds.
   if (!kept.contains(key)) keep(key, tree->tree, tree->tree.report.stats.bytes);
-  keep(scene_key(flight->scene_id), scene, bytes_of(*scene.scene), key);
+  keep(scene_key(flight->scene_id), scene, bytes_of(*scene.scene) + render::prepared_bytes(*scene.prepared), key);
   reports[flight->scene_id] = scene.tree;
   return scene;
 }

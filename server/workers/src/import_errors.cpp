@@ -80,6 +80,10 @@ SceneReport to_report(const render::Scene& scene, const render::ImportReport& im
   for (const auto& material : scene.materials) {
     if (report.materials.size() < kMaxNames) report.materials.push_back(material.name);
   }
+  report.object_count = scene.object_names.size();
+  for (const auto& object : scene.object_names) {
+    if (report.objects.size() < kMaxNames) report.objects.push_back(object);
+  }
   report.point_lights = scene.point_lights.size();
   report.spot_lights = scene.spot_lights.size();
   report.directional_lights = scene.directional_lights.size();

@@ -42,6 +42,8 @@ std::string encode_report(const SceneReport& report) {
   r.natural("dropped_triangles", report.dropped_triangles);
   r.natural("material_count", report.material_count);
   for (const auto& material : report.materials) r.text("material", material);
+  r.natural("object_count", report.object_count);
+  for (const auto& object : report.objects) r.text("object", object);
   r.natural("point_lights", report.point_lights);
   r.natural("spot_lights", report.spot_lights);
   r.natural("directional_lights", report.directional_lights);
@@ -72,6 +74,8 @@ std::optional<SceneReport> decode_report(std::string_view text) {
   report.dropped_triangles = r.natural("dropped_triangles");
   report.material_count = r.natural("material_count");
   report.materials = r.list("material");
+  report.object_count = r.natural("object_count");
+  report.objects = r.list("object");
   report.point_lights = r.natural("point_lights");
   report.spot_lights = r.natural("spot_lights");
   report.directional_lights = r.natural("directional_lights");

@@ -1,6 +1,7 @@
 // How long does a build take, how much does it do, and how do both grow with the triangles?
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <stdexcept>
 
 #include "bench_report.hpp"
 #include "raykiln/accel/build_limits.hpp"
@@ -236,5 +237,10 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "of the meshes");
   app.add_option("--json", options.json, "write the figures to this file");
   CLI11_PARSE(app, argc, argv);
-  return run(options);
+  try {
+    return run(options);
+  } catch (const std::length_error& refused) {
+    std::fprintf(stderr, "%s\n", refused.what());
+    return 2;
+  }
 }

@@ -131,6 +131,8 @@ int main(int argc, char** argv) {
   app.add_option("--triangles", options.triangles, "of a generated mesh, about")
       ->check(CLI::Range(std::size_t{2}, std::size_t{100'000'000}));
   app.add_option("--leaf-width", options.params.leaf_width, "8 or 16")->check(CLI::IsMember({8, 16}));
+  app.add_option("--k-i", options.params.k_i, "cost of a triangle test, for the builder")
+      ->check(CLI::PositiveNumber);
   app.add_option("--stream", options.stream, "rays a call")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
   app.add_option("--repeat", options.repeat, "best of this many")->check(CLI::Range(1, 1000));

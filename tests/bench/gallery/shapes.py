@@ -92,7 +92,7 @@ class Gltf:
 
     def material(self, **fields):
         self.extensions |= set(fields.get("extensions", {}))
-        self.materials.append(fields)
+        self.materials.append({"doubleSided": True, **fields})
         return len(self.materials) - 1
 
     def texture(self, file):

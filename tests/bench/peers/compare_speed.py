@@ -4,8 +4,8 @@
 relMSE = mean over pixels and channels of (x - r)^2 / (r^2 + 0.01 mean(r)^2). It is taken from pairs: renders
 of one method with independent seeds differ by twice their error, with no noise of a reference in it; r, in the
 denominator, is the mean of all renders of both programs. tests/peer shows that both have the same r. From n
-samples in t seconds with error e, e t / target seconds give the target: error falls with the number of samples
-(a little faster with stratified samples, which n near the target leaves out).
+samples in t seconds with error e, e t / target seconds give the target. Error of stratified samples falls faster than
+1/n, so a first pair of renders tells each method's own n: the power of 2 nearest to where the target is, at most --most.
 
 Methods take turns, so that a loud machine is loud for all. Seconds are of processor time, of all threads, of
 rendering alone: for raykiln what n samples take beyond one sample; for Mitsuba of a warm call, compiled before.
@@ -99,12 +99,18 @@ def measure(name, options) -> dict:
     program = str(Path(options.bin) / "raykiln")
     methods = [Raykiln(program, folder, options.side, options.threads, s) for s in ("random", "sobol")]
     methods += [Mitsuba(folder, options.side, s) for s in ("independent", "multijitter")]
+    counts = {}
     for method in methods:
         method.warm(samples)
+        pilot = [method.render(samples, seed)[0] for seed in (3, 4)]
+        r = np.mean(pilot, 0)
+        error = float((np.var(pilot, axis=0, ddof=1) / (r**2 + 0.01 * r.mean() ** 2)).mean())
+        counts[method.name] = 2 ** round(np.clip(np.log2(samples * error / TARGET), 4, np.log2(options.most)))
+        method.warm(counts[method.name])
     pictures, cpu, wall = ({m.name: [] for m in methods} for _ in range(3))
     for turn in range(options.turns):
         for method in methods:
-            picture, seconds, clock = method.render(samples, 10 + turn)
+            picture, seconds, clock = method.render(counts[method.name], 10 + turn)
             pictures[method.name].append(picture)
             cpu[method.name].append(seconds)
             wall[method.name].append(clock)
@@ -115,7 +121,7 @@ def measure(name, options) -> dict:
     for method, renders in pictures.items():
         error = float((np.var(renders, axis=0, ddof=1) * weight).mean())
         seconds = float(np.median(cpu[method]))
-        result[method] = {"side": options.side, "samples": samples, "cpu_s": seconds, "wall_s": float(np.median(wall[method])),
+        result[method] = {"side": options.side, "samples": counts[method], "cpu_s": seconds, "wall_s": float(np.median(wall[method])),
                           "relmse": error, "to_target_s": seconds * error / TARGET,
                           "bias": float(np.mean(renders) / r.mean() - 1)}
         print(f"{name} | {method}: {result[method]}", flush=True)
@@ -125,7 +131,7 @@ def measure(name, options) -> dict:
 def line(name, result) -> str:
     best = {who: min(v["to_target_s"] for k, v in result.items() if k.startswith(who))
             for who in ("raykiln", "Mitsuba")}
-    cells = [f"{v['to_target_s']:.2f} ({v['cpu_s']:.2f} s, {v['relmse']:.2g})" for v in result.values()]
+    cells = [f"{v['to_target_s']:.2f} ({v['samples']}, {v['cpu_s']:.2f} s, {v['relmse']:.2g})" for v in result.values()]
     return f"| {name} | {' | '.join(cells)} | **{best['raykiln'] / best['Mitsuba']:.2f}** |"
 
 
@@ -156,6 +162,7 @@ def main():
     parser.add_argument("--only", action="append", default=[], help="a scene's name (may be given again)")
     parser.add_argument("--side", type=int, default=128, help="of the picture, pixels")
     parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--most", type=int, default=256, help="samples a pixel of one render")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--no-efficiency", action="store_true", help="leave the second table out")
     parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
@@ -172,7 +179,7 @@ def main():
     first = next(iter(results.values()))
     lines = [f"| scene | {' | '.join(first)} | raykiln / Mitsuba, better of each |", "|---" * (len(first) + 2) + "|"]
     lines += [line(name, result) for name, result in results.items()]
-    lines += ["", f"Processor seconds to relMSE {TARGET} (in brackets: seconds and relMSE of one render); pictures of "
+    lines += ["", f"Processor seconds to relMSE {TARGET} (in brackets: samples, seconds and relMSE of one render); pictures of "
               f"{sorted({v['side'] for r in results.values() for v in r.values()})} pixels a side, {options.threads} threads, Mitsuba {mi.__version__}.", ""]
     lines += efficiency(options) if not options.no_efficiency else []
     print("\n".join(lines))

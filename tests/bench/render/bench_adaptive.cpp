@@ -1,16 +1,21 @@
 // Is an error target kept, and what does placing samples where the error is save?
-// Usage: bench_adaptive [SIDE_PX] [SEEDS] [SCENE_FOLDER]
-// The target of a scene is the error that 256 samples everywhere have (rounded). Every seed stops as a job does: when the upper end of the
-// interval of its error is at the target, judged at 64 samples and after each tenth more; once with the same samples everywhere, once
+// Usage: bench_adaptive [--targets] [WIDTHxHEIGHT] [SEEDS[@SAMPLES]] [SCENE...]
+// The target of a scene is the error that SAMPLES (256) everywhere have (rounded). Every seed stops as a job does: when the upper end of the
+// interval of its error is at the target, judged at 64 samples and where jobs are; once with the same samples everywhere, once
 // placed by cells. Truth is the mean of the other seeds' even pictures (Celarek et al. 2019), whose own noise is taken off.
-// "gain" is the ratio of processor seconds times squared true error: time to equal error, as error^2 falls like 1/time.
-// "bound" is what the noise of the cells allows at most: (sum of V) / (sum of sqrt V)^2 times cells, without floor or caution.
+// "gain" is the ratio of processor seconds times squared true error: time to equal error, as error^2 falls like 1/time; "gain_in_rays"
+// the same with rays for seconds, which no other program disturbs.
+// "bound" is what the noise V of the cells and the rays c of their samples allow at most, without floor or caution: sum c sum V / (sum
+// sqrt(c V))^2; "bound_in_samples" the same where a sample costs as much everywhere; "left" what the plan for 1024 samples on average leaves
+// of it, made from 64 samples of another seed. With 0 SEEDS these alone, with --targets nothing adaptive.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
+#include <numeric>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "raykiln/accuracy/allocation.hpp"
@@ -18,6 +23,7 @@
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/accuracy/true_error.hpp"
 #include "raykiln/io/import.hpp"
+#include "raykiln/scheduler/judge_picture.hpp"
 #include "support/effect_scenes.hpp"
 
 namespace {
@@ -27,8 +33,9 @@ using namespace raykiln::render;
 constexpr std::uint64_t kFloor = 64, kMost = 1U << 16U;
 
 struct Run {
-  double render_seconds = 0.0, decide_seconds = 0.0, samples = 0.0, shown = 0.0;
-  bool flagged = false, met = false;
+  double render_seconds = 0.0, decide_seconds = 0.0, samples = 0.0, rays = 0.0;
+  int decisions = 0;
+  bool flagged = false;
   std::vector<double> picture;
   [[nodiscard]] double seconds() const { return render_seconds + decide_seconds; }
 };
@@ -46,6 +53,7 @@ class Cells {
       }
     }
     next_block_.resize(rects_.size(), 0);
+    rays_.resize(rects_.size(), 0.0);
   }
   void advance(const std::vector<std::uint64_t>& limits) {
     for (std::size_t i = 0; i < rects_.size(); ++i) {
@@ -54,7 +62,9 @@ class Cells {
         blocks.push_back(b);
       }
       if (blocks.empty()) continue;
-      merge(film_, render_tile(scene_, settings_, rects_[i], blocks, {}));
+      const TileResult result = render_tile(scene_, settings_, rects_[i], blocks, {});
+      merge(film_, result);
+      rays_[i] += static_cast<double>(result.stats.camera_rays + result.stats.bounce_rays + result.stats.shadow_rays);
       samples_ += static_cast<double>(rects_[i].pixels() * (blocks.back().first + blocks.back().count - blocks.front().first));
     }
   }
@@ -63,6 +73,7 @@ class Cells {
   }
   [[nodiscard]] const Film& film() const { return film_; }
   [[nodiscard]] double mean_samples() const { return samples_ / settings_.width / settings_.height; }
+  [[nodiscard]] const std::vector<double>& rays() const { return rays_; }  ///< of each cell so far
 
  private:
   const PreparedScene& scene_;
@@ -70,41 +81,77 @@ class Cells {
   Film film_;
   std::vector<PixelRect> rects_;
   std::vector<std::uint64_t> next_block_;
+  std::vector<double> rays_;
   double samples_ = 0.0;
 };
+
+/// Samples at the first border of a block that has at least so many.
+std::uint64_t border_at(std::uint64_t samples) {
+  std::uint64_t end = 0;
+  for (std::uint64_t i = 0; end < samples; ++i) end = sample_block(i).first + sample_block(i).count;
+  return end;
+}
 
 Run run(const PreparedScene& scene, const RenderSettings& settings, double target, bool adaptive) {
   Cells cells(scene, settings);
   Run result;
-  double mean = kFloor;
-  std::vector<std::uint64_t> limits = cells.even(kFloor);
+  raykiln::server::JobRequest request;
+  request.adaptive = adaptive;
+  request.stop.samples = kMost;
+  request.stop.error = target;
+  std::uint64_t samples = kFloor;
+  std::vector<std::uint64_t> limits = cells.even(samples);
   while (true) {
     const std::clock_t begun = std::clock();
     cells.advance(limits);
     result.render_seconds += seconds_since(begun);
     const std::clock_t deciding = std::clock();
-    const ImageError error = image_error(cells.film());
-    result.flagged = error.heavy_tailed;
-    result.met = error.error.high <= target;
-    result.shown = error.error.value;
-    const bool enough = result.met || mean > kMost;
-    mean *= 1.1;
-    if (!enough) limits = adaptive ? allocate_samples(cells.film(), mean, kMost) : cells.even(static_cast<std::uint64_t>(mean));
+    const raykiln::server::Decision decision = decide(cells.film(), request);
     result.decide_seconds += seconds_since(deciding);
-    if (enough) break;
+    ++result.decisions;
+    result.flagged = decision.error.heavy_tailed;
+    if (target_met(request.stop, decision.error) || samples >= kMost) break;
+    samples = border_at(raykiln::server::next_decision(samples));
+    limits = adaptive ? decision.samples : cells.even(samples);
   }
   result.samples = cells.mean_samples();
+  result.rays = std::accumulate(cells.rays().begin(), cells.rays().end(), 0.0);
   result.picture = pixel_errors(cells.film()).mean;
   return result;
 }
 
-/// The error of 256 samples of a seed of its own, to two digits, and what the cells' noise allows at most.
+/// The error of so many samples of a seed of its own, to two digits, and what the cells' noise allows at most.
 struct Pilot {
-  double target = 0.0, bound = 1.0;
+  double target = 0.0, bound = 1.0, bound_in_samples = 1.0, left = 1.0;
 };
-Pilot pilot(const PreparedScene& scene, const RenderSettings& settings) {
+
+/// What placing samples that cost c saves at most where noise is V: sum c sum V / (sum sqrt(c V))^2 (Cauchy-Schwarz).
+double saving(const std::vector<double>& cost, const std::vector<double>& noise) {
+  double costs = 0.0, noises = 0.0, roots = 0.0;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    costs += cost[i];
+    noises += noise[i];
+    roots += std::sqrt(cost[i] * noise[i]);
+  }
+  return costs * noises / (roots * roots);
+}
+
+/// The same for a plan n: sum c sum V / (sum c n sum V / n).
+double saving(const std::vector<double>& cost, const std::vector<double>& noise, const std::vector<std::uint64_t>& plan) {
+  double costs = 0.0, noises = 0.0, spent = 0.0, remaining = 0.0;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    const auto n = static_cast<double>(plan[i]);
+    costs += cost[i];
+    noises += noise[i];
+    spent += cost[i] * n;
+    remaining += noise[i] / n;
+  }
+  return costs * noises / (spent * remaining);
+}
+
+Pilot pilot(const PreparedScene& scene, RenderSettings settings, std::uint64_t samples) {
   Cells cells(scene, settings);
-  cells.advance(cells.even(256));
+  cells.advance(cells.even(border_at(samples)));
   const double error = image_error(cells.film()).error.value;
   if (!(error > 0.0)) return {};
   const double digit = std::pow(10.0, std::floor(std::log10(error)) - 1.0);
@@ -124,13 +171,11 @@ Pilot pilot(const PreparedScene& scene, const RenderSettings& settings) {
       }
     }
   }
-  double sum = 0.0, roots = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < noise.size(); ++i) {
-    sum += noise[i];
-    roots += std::sqrt(noise[i] * pixels[i]);
-    all += pixels[i];
-  }
-  return {digit * std::ceil(error / digit), sum * all / (roots * roots)};
+  --settings.seed;
+  Cells first(scene, settings);
+  first.advance(first.even(kFloor));
+  const auto plan = allocate_samples(first.film(), 1024.0, kMost);
+  return {digit * std::ceil(error / digit), saving(cells.rays(), noise), saving(pixels, noise), saving(cells.rays(), noise, plan)};
 }
 
 /// True errors over the target, their mean square, and how many lie where they should.
@@ -164,72 +209,116 @@ Kept judge(const std::vector<Run>& runs, const std::vector<Run>& even, double ta
 }
 
 struct Sums {
-  double samples = 0.0, render = 0.0, decide = 0.0;
+  double samples = 0.0, rays = 0.0, decisions = 0.0, render = 0.0, decide = 0.0;
 };
 Sums add_up(const std::vector<Run>& runs) {
   Sums sums;
   const auto n = static_cast<double>(runs.size());
   for (const Run& r : runs) {
     sums.samples += r.samples / n;
+    sums.rays += r.rays / n;
+    sums.decisions += r.decisions / n;
     sums.render += r.render_seconds / n;
     sums.decide += r.decide_seconds / n;
   }
   return sums;
 }
 
-void measure(const std::string& name, const PreparedScene& scene, RenderSettings settings, int side, int seeds, bool& first) {
-  settings.width = settings.height = side;
+struct Measured {
+  std::string name;
+  std::shared_ptr<const PreparedScene> scene;
+  RenderSettings settings;
+};
+
+/// What is asked for of each scene.
+struct Question {
+  int seeds = 20, samples = 256;
+  bool even_alone = false;
+};
+
+void measure(const Measured& what, const Question& asked, bool first) {
+  const int seeds = asked.seeds;
+  const PreparedScene& scene = *what.scene;
+  RenderSettings settings = what.settings;
   settings.seed = 4999;
-  const Pilot found = pilot(scene, settings);
+  const Pilot found = pilot(scene, settings, static_cast<std::uint64_t>(asked.samples));
   if (!(found.target > 0.0)) return;
+  std::printf("%s  {\"scene\": \"%s\", \"target\": %.4g, \"bound\": %.3f, \"bound_in_samples\": %.3f, \"left\": %.3f, \"seeds\": %d",
+              first ? "" : ",\n", what.name.c_str(), found.target, found.bound, found.bound_in_samples, found.left, seeds);
+  std::fflush(stdout);
+  if (seeds == 0) {
+    std::printf("}");
+    return;
+  }
   std::vector<Run> even, placed;
   for (int seed = 0; seed < seeds; ++seed) {
     settings.seed = 5000 + static_cast<std::uint64_t>(seed);
     even.push_back(run(scene, settings, found.target, false));
-    placed.push_back(run(scene, settings, found.target, true));
+    if (!asked.even_alone) placed.push_back(run(scene, settings, found.target, true));
   }
-  const Kept of_even = judge(even, even, found.target), of_placed = judge(placed, even, found.target);
-  const Sums e = add_up(even), p = add_up(placed);
-  const double gain = (e.render + e.decide) * of_even.mean_square / ((p.render + p.decide) * of_placed.mean_square);
-  std::printf("%s  {\"scene\": \"%s\", \"target\": %.4g, \"seeds\": %d, \"gain\": %.3f, \"bound\": %.3f", first ? "" : ",\n", name.c_str(),
-              found.target, seeds, gain, found.bound);
-  first = false;
-  const auto tell = [](const char* what, const Kept& k, const Sums& s) {
-    std::printf(",\n   \"%s\": {\"samples\": %.1f, \"render_seconds\": %.3f, \"decide_seconds\": %.3f, \"kept\": %d, \"flagged\": %d, "
-                "\"least\": %.3f, \"largest\": %.3f}", what, s.samples, s.render, s.decide, k.within, k.flagged, k.least, k.largest);
+  const Kept of_even = judge(even, even, found.target);
+  const Sums e = add_up(even);
+  const auto tell = [](const char* how, const Kept& k, const Sums& s) {
+    std::printf(",\n   \"%s\": {\"samples\": %.1f, \"rays\": %.0f, \"render_seconds\": %.3f, \"decide_seconds\": %.3f, \"decisions\": %.1f, \"kept\": %d, "
+                "\"flagged\": %d, \"least\": %.3f, \"largest\": %.3f}", how, s.samples, s.rays, s.render, s.decide, s.decisions, k.within, k.flagged,
+                k.least, k.largest);
   };
   tell("even", of_even, e);
-  tell("adaptive", of_placed, p);
+  if (!asked.even_alone) {
+    const Kept of_placed = judge(placed, even, found.target);
+    const Sums p = add_up(placed);
+    const double squares = of_even.mean_square / of_placed.mean_square;
+    tell("adaptive", of_placed, p);
+    std::printf(",\n   \"gain\": %.3f, \"gain_in_rays\": %.3f", (e.render + e.decide) / (p.render + p.decide) * squares, e.rays / p.rays * squares);
+  }
   std::printf("}");
   std::fflush(stdout);
 }
 
-int number(int argc, char** argv, int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; }
+/// A scene of a folder, or one of the named ones; nothing when it is neither.
+std::optional<Measured> scene_of(const std::string& what) {
+  for (const auto& shown : support::named_effect_scenes()) {
+    if (shown.name == what) return Measured{what, shown.builder.prepare(), shown.settings};
+  }
+  ImportResult imported = import_scene(DirectoryFiles(what));
+  if (const auto* error = std::get_if<ImportError>(&imported)) {
+    std::fprintf(stderr, "%s: %s\n", what.c_str(), error->message.c_str());
+    return std::nullopt;
+  }
+  auto scene = std::make_shared<const Scene>(std::move(std::get<ImportedScene>(imported).scene));
+  SerialTaskRunner runner;
+  auto tree = build_scene_tree(*scene, {}, runner);
+  return Measured{std::filesystem::path(what).filename().string(), prepare(std::move(scene), std::move(tree)), {}};
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int side = number(argc, argv, 1, 32), seeds = number(argc, argv, 2, 20);
-  if (side <= 0 || seeds < 3) {
-    std::puts("usage: bench_adaptive [SIDE_PX] [SEEDS] [SCENE_FOLDER]\n"
-              "Whether error targets are kept, and time to equal error of samples placed by cells; JSON. Defaults: 32 20.");
-    return argc > 1 && std::string_view(argv[1]) == "--help" ? 0 : 2;
+  std::vector<std::string> given(argv + 1, argv + argc);
+  Question asked;
+  asked.even_alone = !given.empty() && given[0] == "--targets";
+  if (asked.even_alone) given.erase(given.begin());
+  int width = 32, height = 32;
+  if (!given.empty() && std::sscanf(given[0].c_str(), "%dx%d", &width, &height) != 2) width = height = 0;
+  if (given.size() > 1 && std::sscanf(given[1].c_str(), "%d@%d", &asked.seeds, &asked.samples) < 1) asked.seeds = -1;
+  if (width <= 0 || height <= 0 || asked.samples < 2 * static_cast<int>(kFloor) || (asked.seeds < 3 && asked.seeds != 0)) {
+    std::puts("usage: bench_adaptive [--targets] [WIDTHxHEIGHT] [SEEDS[@SAMPLES]] [SCENE...]\n"
+              "Whether error targets are kept, and time to equal error of samples placed by cells; JSON. With 0 seeds what\n"
+              "placing samples can save at most. Defaults: 32x32 20@256 and\n"
+              "the named scenes: matte_point_light diffuse_cornell everything. SCENE: one of them, or a folder.");
+    return !given.empty() && given[0] == "--help" ? 0 : 2;
   }
-  std::printf("{\"side_px\": %d, \"scenes\": [\n", side);
-  bool first = true;
-  if (argc > 3) {
-    ImportResult imported = import_scene(DirectoryFiles(argv[3]));
-    if (const auto* error = std::get_if<ImportError>(&imported)) {
-      std::fprintf(stderr, "%s: %s\n", argv[3], error->message.c_str());
-      return 1;
-    }
-    auto scene = std::make_shared<const Scene>(std::move(std::get<ImportedScene>(imported).scene));
-    SerialTaskRunner runner;
-    auto tree = build_scene_tree(*scene, {}, runner);
-    measure("demo", *prepare(std::move(scene), std::move(tree)), {}, side, seeds, first);
+  std::vector<std::string> scenes(given.begin() + std::min<std::ptrdiff_t>(2, std::ssize(given)), given.end());
+  if (scenes.empty()) {
+    for (const auto& shown : support::named_effect_scenes()) scenes.push_back(shown.name);
   }
-  for (const auto& shown : support::named_effect_scenes()) {
-    measure(shown.name, *shown.builder.prepare(), shown.settings, side, seeds, first);
+  std::printf("{\"width\": %d, \"height\": %d, \"scenes\": [\n", width, height);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    auto scene = scene_of(scenes[i]);
+    if (!scene) return 1;
+    scene->settings.width = width;
+    scene->settings.height = height;
+    measure(*scene, asked, i == 0);
   }
   std::printf("\n]}\n");
   return 0;

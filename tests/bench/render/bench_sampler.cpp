@@ -1,5 +1,5 @@
-// How fast do errors fall with samples, by sampler?
-// Usage: bench_sampler [SIDE_PX] [SAMPLES] [SEEDS]     JSON: error against samples, slopes, processor seconds
+// How fast do errors fall with samples and with processor time, by sampler?
+// Usage: bench_sampler [SIDE_PX] [SAMPLES] [SEEDS]     JSON: error against samples and seconds, slopes, gain at equal time
 //        bench_sampler SIDE_PX SAMPLES SCENE SAMPLER   one render without a clock, for callgrind
 // relMSE is the scatter of pictures between seeds over (mean^2 + 0.01 M^2): no reference is needed. That both
 // samplers have the same limit is checked while it is timed (exit code 3 if not).
@@ -40,37 +40,30 @@ constexpr BenchScene kScenes[] = {{"box_under_lamp", box_under_lamp},
                                   {"glass_with_caustic", support::glass_with_caustic}};
 
 struct Curve {
+  explicit Curve(std::uint64_t most, std::size_t values) {
+    for (std::uint64_t n = 16; n <= most; n *= 2) samples.push_back(n);
+    scatter.assign(samples.size(), Scatter(values));
+    seconds.assign(samples.size(), 0.0);
+  }
   std::vector<std::uint64_t> samples;
+  std::vector<Scatter> scatter;
+  std::vector<double> seconds;  ///< of the processor, all seeds together, until so many samples
   std::vector<double> rel_mse;
-  double mean = 0.0, variance = 0.0, seconds_per_sample = 0.0;
 };
 
-Curve measure(const PreparedScene& scene, RenderSettings settings, std::uint64_t most, std::uint64_t seeds) {
-  const std::size_t values = 3 * static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
-  Curve curve;
-  for (std::uint64_t n = 16; n <= most; n *= 2) curve.samples.push_back(n);
-  std::vector<Scatter> scatter(curve.samples.size(), Scatter(values));
-  const PixelRect all{0, 0, settings.width, settings.height};
+void render_seed(const PreparedScene& scene, const RenderSettings& settings, Curve& curve) {
+  Film film = make_film(settings);
+  std::uint64_t block = 0, done = 0;
   const std::clock_t start = std::clock();
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    settings.seed = seed;
-    Film film = make_film(settings);
-    std::uint64_t block = 0, done = 0;
-    for (std::size_t k = 0; k < scatter.size(); ++k) {
-      std::vector<SampleBlock> blocks;
-      for (; done < curve.samples[k]; done = blocks.back().first + blocks.back().count) {
-        blocks.push_back(sample_block(block++));
-      }
-      merge(film, render_tile(scene, settings, all, blocks, {}));
-      scatter[k].add(means_of(film));
+  for (std::size_t k = 0; k < curve.samples.size(); ++k) {
+    std::vector<SampleBlock> blocks;
+    for (; done < curve.samples[k]; done = blocks.back().first + blocks.back().count) {
+      blocks.push_back(sample_block(block++));
     }
+    merge(film, render_tile(scene, settings, {0, 0, settings.width, settings.height}, blocks, {}));
+    curve.seconds[k] += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    curve.scatter[k].add(means_of(film));
   }
-  const double rendered = static_cast<double>(most * seeds) * static_cast<double>(values) / 3.0;
-  curve.seconds_per_sample = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / rendered;
-  for (const Scatter& s : scatter) curve.rel_mse.push_back(s.rel_mse());
-  curve.mean = scatter.back().mean();
-  curve.variance = scatter.back().variance();
-  return curve;
 }
 
 /// Of log relMSE over log samples from 128 on, where all replicates hold as many; 0 without two points.
@@ -84,29 +77,59 @@ double slope(const Curve& curve) {
   return n < 2 ? 0.0 : (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-void print(const char* sampler, const Curve& curve) {
-  std::printf("    \"%s\": {\"slope\": %.3f, \"seconds_per_sample\": %.3e, \"rel_mse\": {", sampler, slope(curve),
-              curve.seconds_per_sample);
+/// relMSE that the curve reaches in so many seconds: a power law between its points, beyond them that of the last two.
+double rel_mse_in(const Curve& curve, double seconds) {
+  std::size_t k = 1;
+  while (k + 1 < curve.seconds.size() && curve.seconds[k] < seconds) ++k;
+  const double steepness =
+      std::log(curve.rel_mse[k] / curve.rel_mse[k - 1]) / std::log(curve.seconds[k] / curve.seconds[k - 1]);
+  return curve.rel_mse[k] * std::pow(seconds / curve.seconds[k], steepness);
+}
+
+template <class Value>
+void print_by_samples(const char* name, const Curve& curve, Value&& value) {
+  std::printf("\"%s\": {", name);
   for (std::size_t k = 0; k < curve.samples.size(); ++k) {
-    std::printf("%s\"%llu\": %.4e", k > 0 ? ", " : "", static_cast<unsigned long long>(curve.samples[k]), curve.rel_mse[k]);
+    std::printf("%s\"%llu\": %.4e", k > 0 ? ", " : "", static_cast<unsigned long long>(curve.samples[k]), value(k));
   }
-  std::printf("}}");
+  std::printf("}");
+}
+
+void print(const char* sampler, const Curve& curve) {
+  std::printf("    \"%s\": {\"slope\": %.3f,\n     ", sampler, slope(curve));
+  print_by_samples("seconds", curve, [&](std::size_t k) { return curve.seconds[k]; });
+  std::printf(",\n     ");
+  print_by_samples("rel_mse", curve, [&](std::size_t k) { return curve.rel_mse[k]; });
+  std::printf("},\n");
 }
 
 bool compare(const BenchScene& s, int side, std::uint64_t samples, std::uint64_t seeds, const char* comma) {
   const auto scene = s.scene().prepare();
   RenderSettings settings;
   settings.width = settings.height = side;
-  const Curve random = measure(*scene, settings, samples, seeds);
-  settings.sampler = Sampler::kSobol;
-  const Curve sobol = measure(*scene, settings, samples, seeds);
-  const double apart = std::abs(random.mean - sobol.mean) / std::sqrt(random.variance + sobol.variance);
+  const std::size_t values = 3 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+  Curve random(samples, values), sobol(samples, values);
+  // In turns: what else the machine does slows both alike.
+  for (settings.seed = 0; settings.seed < seeds; ++settings.seed) {
+    settings.sampler = Sampler::kRandom;
+    render_seed(*scene, settings, random);
+    settings.sampler = Sampler::kSobol;
+    render_seed(*scene, settings, sobol);
+  }
+  for (Curve* curve : {&random, &sobol}) {
+    for (const Scatter& scatter : curve->scatter) curve->rel_mse.push_back(scatter.rel_mse());
+  }
+  const Scatter& a = random.scatter.back();
+  const Scatter& b = sobol.scatter.back();
+  const double apart = std::abs(a.mean() - b.mean()) / std::sqrt(a.variance() + b.variance());
   std::printf("  {\"scene\": \"%s\",\n", s.name);
   print("random", random);
-  std::printf(",\n");
   print("sobol", sobol);
-  std::printf(",\n    \"means_apart_in_standard_errors\": %.2f, \"rel_mse_ratio_at_end\": %.3f}%s\n", apart,
-              random.rel_mse.back() / sobol.rel_mse.back(), comma);
+  std::printf("    ");
+  print_by_samples("gain_at_equal_time", random,
+                   [&](std::size_t k) { return random.rel_mse[k] / rel_mse_in(sobol, random.seconds[k]); });
+  std::printf(",\n    \"seconds_sobol_over_random\": %.3f, \"means_apart_in_standard_errors\": %.2f}%s\n",
+              sobol.seconds.back() / random.seconds.back(), apart, comma);
   return apart < 5.0;
 }
 

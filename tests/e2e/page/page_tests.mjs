@@ -27,14 +27,14 @@ async function done_job(url) {
   return done_jobs.get(url);
 }
 
-async function render_by_api(url) {
+async function render_by_api(url, more = {}) {
   const form = new FormData();
   for (const { name, buffer } of box_files("done")) form.append("file", new Blob([buffer]), name);
   const scene = await (await fetch(`${url}/v1/scenes`, { method: "POST", body: form })).json();
   const { samples, ...size } = kSmall;
   const answer = await fetch(`${url}/v1/jobs`, {
     method: "POST", headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({ scene: scene.id, name: "done", ...size, stop: { samples } }),
+    body: JSON.stringify({ scene: scene.id, name: "done", ...size, stop: { samples }, ...more }),
   });
   const { id } = await answer.json();
   const state = async () => (await (await fetch(`${url}/v1/jobs/${id}`)).json()).state;
@@ -223,6 +223,23 @@ export const kPageTests = [
       assert.equal(await page.locator(`#field-${key}`).inputValue(), String(value));
     }
     assert.equal(await page.evaluate(() => document.activeElement?.id), "field-scene");
+  })],
+
+  ["layers that were asked for are shown, and asked for again with lens and window", with_tab(async (page, url) => {
+    const more = { layers: ["normal", "depth"], lens: { radius: 0.01, focus_distance: 3 }, crop: { x: 2, y: 1, full_width: 200, full_height: 150 } };
+    await page.goto(`${url}/jobs/${await render_by_api(url, more)}`);
+    await state_is(page, "completed");
+    const layers = await page.locator("#layer option").allInnerTexts();
+    assert.deepEqual(layers, ["Picture", "Standard error", "Samples", "Seconds", "Normal", "Depth"]);
+    await page.locator("#layer").selectOption("normal");
+    await page.locator(".legend", { hasText: "red, green, blue" }).waitFor();
+    await page.getByRole("button", { name: "Render again" }).click();
+    await page.getByText("More settings").click();
+    assert.equal(await page.locator("#field-lens").inputValue(), "0.01 3");
+    assert.equal(await page.locator("#field-crop").inputValue(), "2 1 200 150");
+    for (const [layer, wanted] of [["normal", true], ["depth", true], ["albedo", false]]) {
+      assert.equal(await page.getByLabel({ normal: "Normal", depth: "Depth", albedo: "Albedo" }[layer], { exact: true }).isChecked(), wanted);
+    }
   })],
 
   ["less error has a price, and is bought by the keyboard", with_tab(async (page, url) => {

@@ -86,9 +86,19 @@ class Daemon:
         Path(f"/proc/{self.process.pid}/clear_refs").write_text("5")
 
     def files(self) -> dict:
-        """Relative path -> size of every file in the store but the database."""
+        """Relative path -> size of every file in the store but the database.
+
+        The daemon may remove files and folders meanwhile: what is gone when it is looked at
+        does not count. os.walk passes over folders that are gone, Path.rglob raises.
+        """
         found = {}
-        for path in self.store.rglob("*"):
-            if path.is_file() and ".sqlite" not in path.name and ".db" not in path.name:
-                found[str(path.relative_to(self.store))] = path.stat().st_size
+        for folder, _, names in os.walk(self.store):
+            for name in names:
+                if ".sqlite" in name or ".db" in name:
+                    continue
+                path = Path(folder) / name
+                try:
+                    found[str(path.relative_to(self.store))] = path.stat().st_size
+                except FileNotFoundError:
+                    pass
         return found

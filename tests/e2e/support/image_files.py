@@ -84,7 +84,8 @@ def _paeth(left: int, up: int, corner: int) -> int:
     return (left, up, corner)[distances.index(min(distances))]
 
 
-def read_exr(data: bytes) -> Picture:
+def read_exr(data: bytes, every: bool = False) -> Picture:
+    """R, G and B where they are there, unless every channel is asked for."""
     assert data[:4] == b"\x76\x2f\x31\x01", "not an EXR"
     assert struct.unpack("<I", data[4:8])[0] == 2, "only single-part scan line EXR is expected"
     attributes, position = _exr_attributes(data)
@@ -101,7 +102,7 @@ def read_exr(data: bytes) -> Picture:
         assert len(body) == size, "truncated EXR chunk"
         _exr_chunk(pixels, y - y0, min(lines, height - (y - y0)), body, codec, channels)
     names = [name for name, _ in channels]
-    order = [names.index(c) for c in "RGB" if c in names] if "R" in names else range(len(names))
+    order = [names.index(c) for c in "RGB" if c in names] if "R" in names and not every else range(len(names))
     metadata = {name: _exr_value(*value) for name, value in attributes.items()}
     return Picture(width, height, [names[i] for i in order], pixels[:, :, list(order)], metadata)
 

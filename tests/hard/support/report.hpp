@@ -31,6 +31,12 @@ inline std::uint64_t trials(std::uint64_t commit, std::uint64_t full) {
   return long_run() ? full : commit;
 }
 
+/// Samples of a statistic, as many in the long run; fewer under a sanitizer.
+inline std::uint64_t all_trials(std::uint64_t n) { return trials(n, n); }
+
+/// Samples of each pixel of a picture; a quarter under a sanitizer.
+inline std::uint64_t of_a_pixel(std::uint64_t n) { return tests::kSanitized ? (n + 3) / 4 : n; }
+
 /// Processor seconds of this process: what the others on a machine do not disturb much.
 inline double cpu_seconds() {
   timespec now{};

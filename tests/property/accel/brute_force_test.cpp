@@ -109,6 +109,16 @@ TEST_P(BruteForce, GoingOnAfterAHitListsTheSameHits) {
       ASSERT_TRUE(all[i].t > after[i].t || (all[i].t == after[i].t && all[i].id > after[i].id));
       after[i] = {all[i].t, all[i].id};
     }
+    // The same from the hit itself on, which is how a ray goes on through a gap in a surface.
+    auto shorter = rays;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (all[i].id != render::kNoHit) shorter[i].t_min = all[i].t;
+    }
+    render::closest_hits(*tree, rays, all, after, Traversal::kBruteForce);
+    for (const Traversal kernel : walks()) {
+      render::closest_hits(*tree, shorter, walk, after, kernel);
+      ASSERT_EQ(count_differences(rays, walk, all), 0U) << render::name(kernel) << " layer " << layer;
+    }
   }
 }
 

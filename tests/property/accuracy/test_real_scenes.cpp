@@ -3,10 +3,12 @@
 // this way), independent of it and with an error 14 (8) times as small.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 
+#include "raykiln/accuracy/allocation.hpp"
 #include "raykiln/accuracy/image_error.hpp"
 #include "raykiln/accuracy/pixel_error.hpp"
 #include "raykiln/accuracy/quantiles.hpp"
@@ -30,14 +32,41 @@ struct Case {
   std::uint64_t samples;
   bool tame;  ///< enough samples for what happens in this scene: not flagged
   Sampler sampler = Sampler::kRandom;
+  bool adaptive = false;
+  bool ordinary = true;  ///< cheap enough, and worth it, for the ordinary run
 };
+
+/// `samples` everywhere, or on average as an adaptive job places them: 64 first, then steps of a quarter.
+Film rendered(const PreparedScene& scene, const RenderSettings& settings, std::uint64_t samples, bool adaptive) {
+  Film film = make_film(settings);
+  const std::uint64_t first = adaptive ? kSampleFloor : samples;
+  merge(film, support::render_all(scene, settings, first));
+  for (double mean = 1.25 * static_cast<double>(first); adaptive && mean < 1.2 * static_cast<double>(samples); mean *= 1.25) {
+    const auto there = cell_samples(film), wanted = allocate_samples(film, mean, 1U << 20U);
+    std::size_t cell = 0;
+    for (int y = 0; y < settings.height; y += kCellSide) {
+      for (int x = 0; x < settings.width; x += kCellSide, ++cell) {
+        std::vector<SampleBlock> blocks;
+        for (const SampleBlock& b : blocks_for(wanted[cell])) {
+          if (b.complete && b.first >= there[cell]) blocks.push_back(b);
+        }
+        if (blocks.empty()) continue;
+        const PixelRect rect{x, y, std::min(x + kCellSide, settings.width), std::min(y + kCellSide, settings.height)};
+        merge(film, render_tile(scene, settings, rect, blocks, {}));
+      }
+    }
+  }
+  return film;
+}
 
 class RealScenes : public ::testing::TestWithParam<Case> {};
 
 TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
+  if (!GetParam().ordinary && !long_run()) GTEST_SKIP() << "RAYKILN_LONG=1";
   const std::size_t seeds = tests::kSanitized ? 4 : long_run() ? 200 : 64;
   RenderSettings settings;
   settings.width = settings.height = long_run() ? 24 : 12;
+  if (GetParam().adaptive) settings.width = kCellSide + settings.height / 3;  // at least two cells
   settings.sampler = GetParam().sampler;
   const std::uint64_t samples = GetParam().samples;
   const auto scene = GetParam().scene().prepare();
@@ -46,8 +75,7 @@ TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
   std::vector<double> sum;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     settings.seed = 500 + seed;
-    Film film = make_film(settings);
-    merge(film, support::render_all(*scene, settings, samples));
+    const Film film = rendered(*scene, settings, samples, GetParam().adaptive);
     pictures.push_back(pixel_errors(film));
     shown.push_back(image_error(film));
     sum.resize(pictures.back().mean.size());
@@ -100,6 +128,11 @@ TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
 INSTANTIATE_TEST_SUITE_P(Scenes, RealScenes,
                          ::testing::Values(Case{"diffuse_with_area_light", support::diffuse_with_area_light, 64, true},
                                            Case{"diffuse_by_sobol", support::diffuse_with_area_light, 128, true, Sampler::kSobol},
+                                           Case{"diffuse_adaptive", support::diffuse_with_area_light, 96, true, Sampler::kRandom, true},
+                                           Case{"diffuse_adaptive_by_sobol", support::diffuse_with_area_light, 256, true, Sampler::kSobol, true, false},
+                                           Case{"slit_by_sobol", support::lamp_over_a_slit, 128, false, Sampler::kSobol, false, false},
+                                           Case{"caustic_by_sobol", support::glass_with_caustic, 128, false, Sampler::kSobol, false, false},
+                                           Case{"caustic_adaptive", support::glass_with_caustic, 128, false, Sampler::kRandom, true, false},
                                            Case{"lamp_over_a_slit", support::lamp_over_a_slit, 64, false},
                                            Case{"glass_with_caustic", support::glass_with_caustic, 64, false},
                                            Case{"many_small_lights", support::many_small_lights, 64, false}),

@@ -108,8 +108,8 @@ TEST(EstimatorsAgree, EmitterSamplingTamesASmallLamp) {
 }
 
 /// The soft room with 300 lamps of all sizes in its upper half, which the camera does not see: lamps smaller
-/// than a pixel are noise that no choice among them cures.
-std::shared_ptr<const PreparedScene> room_of_lamps() {
+/// than a pixel are noise that no choice among them cures. Two of three may shine to their fronts alone.
+std::shared_ptr<const PreparedScene> room_of_lamps(bool fronts = false) {
   SceneBuilder b = soft_room();
   const auto number = [](std::uint64_t i, std::uint64_t what) {
     return static_cast<float>(uniform(vertex_key(path_key(9, i, what), 0, 0), Dimension::kLightU));
@@ -118,7 +118,9 @@ std::shared_ptr<const PreparedScene> room_of_lamps() {
     const Vec3f at(1.8F * number(i, 0) - 0.9F, 0.9F * number(i, 1), 1.8F * number(i, 2) - 0.9F);
     const float size = 0.002F + 0.05F * number(i, 3) * number(i, 3);
     const Vec3f up(0, size * number(i, 4), size), aside(size, size * number(i, 5), 0);
-    b.triangle(at, at + aside, at + up, b.material(diffuse_material(Rgb(0.1F), Rgb(0.02F / (size * size)))));
+    Material lamp = diffuse_material(Rgb(0.1F), Rgb(0.02F / (size * size)));
+    lamp.one_sided = fronts && i % 3 != 0;
+    b.triangle(at, at + aside, at + up, b.material(lamp));
   }
   b.look({0, -0.1, 0.9}, {0, -1, -0.3}, {0, 1, 0}, 0.8);
   return b.prepare();
@@ -141,6 +143,22 @@ TEST(EstimatorsAgree, HoweverEmittersAreChosen) {
     EXPECT_NEAR(luminance(tree.mean), luminance(other.mean), 4.0 * sigma) << tree.standard_error;
     EXPECT_LT(sigma, 0.03 * luminance(tree.mean)) << "too noisy to say anything";
   }
+  EXPECT_LT(tree.standard_error, power.standard_error);
+}
+
+// What the tree does not draw because it faces the other way brings nothing; nor what it would have drawn.
+TEST(EstimatorsAgree, WhereLampsShineToTheirFronts) {
+  const auto scene = room_of_lamps(true);
+  const auto render = [&](auto change) {
+    RenderSettings settings = base();
+    change(settings);
+    return support::estimate(support::render_all(*scene, settings, 256));
+  };
+  const Estimate tree = render([](auto&) {});
+  const Estimate power = render([](auto& s) { s.emitter_choice = EmitterChoice::kPower, s.seed = 1; });
+  const double sigma = std::hypot(tree.standard_error, power.standard_error);
+  EXPECT_NEAR(luminance(tree.mean), luminance(power.mean), 4.0 * sigma) << tree.standard_error;
+  EXPECT_LT(sigma, 0.03 * luminance(tree.mean)) << "too noisy to say anything";
   EXPECT_LT(tree.standard_error, power.standard_error);
 }
 

@@ -86,9 +86,9 @@ TEST(ChiSquare, SamplesFollowTheDensity) {
   }
 }
 
-// 4 materials, 2 roughnesses, 4 directions of view, from either side.
+// 6 materials, 2 roughnesses, 4 directions of view, from either side.
 TEST(ChiSquare, FacetsFollowTheirDensity) {
-  constexpr double kTests = 32.0;
+  constexpr double kTests = 48.0;
   int tests = 0;
   for (const auto& [name, material] : support::facet_materials()) {
     for (const double roughness : {0.5, 1.0}) {

@@ -194,9 +194,8 @@ double facet_albedo_at(const Material& material, double roughness, double degree
   return sum / points;
 }
 
-// What absorbs nothing is invisible in a furnace: a metal, a white base below a clear layer, a sheet, a body seen
-// from outside within 1 %, at every roughness and angle; a body seen from inside within 4 %, because its table
-// is coarse about the critical angle.
+// What absorbs nothing is invisible in a furnace, within 1 %: a metal, a white base below a clear layer, a sheet, a body seen
+// from outside and from inside, at every roughness and angle.
 TEST(Energy, FacetsInAFurnaceAreInvisible) {
   Material metal;
   metal.model = SurfaceModel::kMicrofacet;
@@ -208,15 +207,35 @@ TEST(Energy, FacetsInAFurnaceAreInvisible) {
   sheet.index_of_refraction = 1.5F;
   Material mixed = sheet, body = sheet;
   mixed.transparent = 0.4F;
-  mixed.facets.coverage = 0.7F;
   body.facets.thin = false;
+  Material leaf = plastic;
+  leaf.diffuse = Rgb(0.375F);
+  leaf.facets.diffuse_through = Rgb(0.625F);
   for (const double roughness : {0.0, 0.01, 0.15, 0.4, 0.7, 1.0}) {
     for (const double degrees : {0.0, 45.0, 75.0, 85.0, 89.0, 90.0 - 1e-6}) {
-      for (const Material* m : {&metal, &plastic, &sheet, &mixed, &body}) {
+      for (const Material* m : {&metal, &plastic, &sheet, &mixed, &body, &leaf}) {
         EXPECT_NEAR(facet_albedo_at(*m, roughness, degrees), 1.0, 0.01)
             << m->diffuse.x << m->transparent << m->facets.thin << ' ' << roughness << ' ' << degrees;
       }
-      EXPECT_NEAR(facet_albedo_at(body, roughness, 180.0 - degrees), 1.0, 0.04) << roughness << ' ' << degrees;
+      EXPECT_NEAR(facet_albedo_at(body, roughness, 180.0 - degrees), 1.0, 0.01) << roughness << ' ' << degrees;
+    }
+  }
+}
+
+// Light bends about the critical angle of each index, over a range that goes with the roughness: there it is looked for.
+TEST(Energy, RoughBodiesOfAnyIndexAreInvisibleInAFurnaceFromInside) {
+  Material body;
+  body.model = SurfaceModel::kMicrofacet;
+  body.transparent = 1.0F;
+  body.facets.thin = false;
+  for (const float index : {1.1F, 1.22F, 1.8F, 2.4F}) {
+    body.index_of_refraction = index;
+    const double critical = std::asin(1.0 / static_cast<double>(index)) * 180.0 / kPi;
+    for (const double roughness : {0.1, 0.3, 0.4, 0.6, 0.8, 0.97}) {
+      for (const double degrees : {0.8 * critical, critical, 0.5 * (critical + 90.0)}) {
+        EXPECT_NEAR(facet_albedo_at(body, roughness, 180.0 - degrees), 1.0, 0.01)
+            << index << ' ' << roughness << ' ' << degrees;
+      }
     }
   }
 }

@@ -71,7 +71,8 @@ inline void expect_sound(const SurfaceTextures& textures, const Scene& scene) {
   ASSERT_EQ(textures.materials.size(), scene.materials.size());
   for (const TextureImage& image : textures.images) {
     ASSERT_TRUE(image.width > 0 && image.height > 0);
-    const std::size_t values = 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    ASSERT_TRUE(image.channels == 1 || image.channels == 3);
+    const std::size_t values = static_cast<std::size_t>(image.channels) * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     ASSERT_EQ(image.srgb8.size() + image.linear.size(), values);
     ASSERT_TRUE(image.srgb8.empty() || image.linear.empty());
     for (const float value : image.linear) ASSERT_TRUE(value >= 0.0F && value <= 1.0F);
@@ -122,8 +123,8 @@ inline void expect_sound(const ImportedScene& imported) {
     ASSERT_TRUE(m.specular_exp >= 0.0 && m.specular_exp <= 1e15);
     ASSERT_TRUE(m.facets.roughness >= 0.0 && m.facets.roughness <= 1.0);
     ASSERT_TRUE(m.facets.edge >= 0.0F && m.facets.edge <= 1.0F);
-    ASSERT_TRUE(m.facets.coverage >= 0.0F && m.facets.coverage <= 1.0F);
-    ASSERT_TRUE(finite(m.facets.tint) && finite(m.facets.absorption));
+    ASSERT_TRUE(m.coverage >= 0.0F && m.coverage <= 1.0F);
+    ASSERT_TRUE(finite(m.facets.diffuse_through) && finite(m.facets.tint) && finite(m.facets.absorption));
     ASSERT_TRUE(m.index_of_refraction > 0.0F && std::isfinite(m.index_of_refraction));
   }
   if (scene.textures != nullptr) expect_sound(*scene.textures, scene);

@@ -215,8 +215,13 @@ TEST(BuildMemory, ByteLimitHoldsAndIsReported) {
     EXPECT_LT(stats.references, free.references);
     EXPECT_TRUE(stats.budget_reached);
   }
-  // Never less than what holds every triangle once.
-  EXPECT_EQ(limited_to(1).references, mesh.triangles.size());
+  // Never more than the limit: what may not hold every triangle once is refused.
+  const std::uint64_t least = render::least_bytes(mesh.view(), {});
+  const auto poorest = limited_to(least);
+  EXPECT_EQ(poorest.references, mesh.triangles.size());
+  EXPECT_LE(poorest.live_bytes_peak, least);
+  EXPECT_THROW((void)limited_to(least - 1), std::length_error);
+  EXPECT_THROW((void)limited_to(1), std::length_error);
   EXPECT_EQ(limited_to(std::uint64_t{1} << 40).references, free.references);
 }
 

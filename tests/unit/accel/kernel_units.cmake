@@ -1,5 +1,6 @@
 # A processor without AVX must never meet an instruction of it by accident.
-#  1. The units of the lane kernels define no weak symbol: the linker could take it for the same
+# Units are those of ARCHIVE whose names begin with UNITS.
+#  1. The units of the kernels define no weak symbol: the linker could take it for the same
 #     function of another unit.
 #  2. No other unit of the archive names a register that AVX brought.
 execute_process(COMMAND ${NM} --defined-only ${ARCHIVE} OUTPUT_VARIABLE symbols
@@ -10,7 +11,7 @@ execute_process(COMMAND ${OBJDUMP} -d --no-show-raw-insn ${ARCHIVE} OUTPUT_VARIA
 set(units 0)
 string(REGEX REPLACE "\n([^ \n]+\\.o):\n" ";\\1\n" members "${symbols}")
 foreach(member ${members})
-  if(member MATCHES "^lane_avx")
+  if(member MATCHES "^${UNITS}")
     math(EXPR units "${units} + 1")
     if(member MATCHES "[0-9a-f]+ ([WVu]) ([^\n]+)")
       message(SEND_ERROR "a kernel's unit defines ${CMAKE_MATCH_2}, which another may share")
@@ -27,7 +28,7 @@ set(wide 0)
 foreach(member ${members})
   if(member MATCHES "%[yz]mm|%k[1-7]")
     math(EXPR wide "${wide} + 1")
-    if(NOT member MATCHES "^lane_avx")
+    if(NOT member MATCHES "^${UNITS}")
       string(REGEX MATCH "^[^ ]+" unit "${member}")
       message(SEND_ERROR "${unit} holds instructions of AVX")
     endif()

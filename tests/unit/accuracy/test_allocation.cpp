@@ -13,16 +13,16 @@ using support::synthetic_film;
 using support::TestRandom;
 
 TEST(Allocation, FollowsTheSquareRootOfTheNoise) {
-  // Four cells in a row, far enough apart for neighbours not to count: noise 1, 1, 1, and 16 times the variance.
+  // Four cells in a row, and a fifth with 64 times their variance.
   const Film film = synthetic_film(80, 16, 64, 1, [](int x, int, TestRandom& random) {
-    return Rgbd(1.0 + (x >= 64 ? 0.4 : 0.1) * random.normal());
+    return Rgbd(1.0 + (x >= 64 ? 0.64 : 0.08) * random.normal());
   });
   const auto samples = allocate_samples(film, 640.0, 100000);
   ASSERT_EQ(samples.size(), 5U);
-  // n = f 1 for three cells, f 2 for the neighbour of the noisy one (half its wish), f 4 for the noisy one: 3200 / 9.
-  EXPECT_NEAR(static_cast<double>(samples[0]), 3200.0 / 9.0, 20.0);
-  EXPECT_NEAR(static_cast<double>(samples[3]), 6400.0 / 9.0, 40.0);
-  EXPECT_NEAR(static_cast<double>(samples[4]), 12800.0 / 9.0, 80.0);
+  // n = f 1 for three cells, f 2 for the neighbour of the noisy one (a quarter of its wish), f 8 for the noisy one: 3200 / 13.
+  EXPECT_NEAR(static_cast<double>(samples[0]), 3200.0 / 13.0, 12.0);
+  EXPECT_NEAR(static_cast<double>(samples[3]), 6400.0 / 13.0, 25.0);
+  EXPECT_NEAR(static_cast<double>(samples[4]), 25600.0 / 13.0, 100.0);
   const std::uint64_t all = std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
   EXPECT_NEAR(static_cast<double>(all), 5 * 640.0, 5.0);
 }

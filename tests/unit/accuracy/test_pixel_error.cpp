@@ -41,6 +41,21 @@ TEST(PixelError, IsUnknownBelowTwoSamples) {
   EXPECT_TRUE(std::isfinite(errors.mean[0]));
 }
 
+TEST(PixelError, OfCopiedRowsIsThatOfTheFilm) {
+  const Film film = synthetic_film(5, 7, 8, 3, [](int x, int y, auto& random) {
+    const double value = (x + y) % 3 + -std::log(1.0 - random.uniform());
+    return Rgbd(value, 0.5 * value, 2.0 * value);
+  });
+  std::vector<PixelSums> rows;  // 1 to 4, for what is in 2 and 3
+  for (std::size_t i = 5; i < 25; ++i) rows.push_back(film.pixel(i));
+  const PixelErrors whole = pixel_errors(film), part = pixel_errors(rows, 5, film.relation());
+  EXPECT_EQ(part.height, 4);
+  for (std::size_t i = 15; i < 45; ++i) {
+    EXPECT_EQ(part.standard_error[i], whole.standard_error[i + 15]);
+    EXPECT_EQ(part.mean[i], whole.mean[i + 15]);
+  }
+}
+
 TEST(PixelError, APixelWithoutAnEventIsNotCertain) {
   // All pixels but the middle one have seen a bright sample.
   const Film film = synthetic_film(5, 5, 64, 1, [](int x, int y, auto& random) {

@@ -56,9 +56,11 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.emitter_sampling = false;
   request.sampler = Sampler::kSobol;
   request.emitter_choice = EmitterChoice::kTree;
+  request.texture_filter = TextureFilter::kFootprint;
   request.lens = Lens{0.25, 3.0};
   request.crop = Crop{1, 2, 16384, 16384};
   request.effects = "without=refraction,roulette";
+  request.layers = "albedo,depth,indirect";
   request.light_model = LightModel::kSeed;
   request.light_model_overrides = {PhongDivisor::kMax, FresnelFormula::kSchlick, false, std::nullopt, true};
   request.adaptive = true;
@@ -107,6 +109,7 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/sampler", "halton", "/sampler invalid_value");
   check("/adaptive", "yes", "/adaptive wrong_type");
   check("/emitter_choice", "luck", "/emitter_choice invalid_value");
+  check("/texture_filter", "mip", "/texture_filter invalid_value");
   check("/filter", "gauss", "/filter invalid_value");
   check("/lens", 0.1, "/lens wrong_type");
   check("/lens", {{"radius", 0.1}}, "/lens/focus_distance missing_field");
@@ -115,6 +118,11 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/crop", {{"x", 0}, {"y", 0}, {"full_width", 640}}, "/crop/full_height missing_field");
   check("/camera", {{"eye", {0, 0, 0}}, {"look_at", {0, 0, 1}}, {"fov_deg", 40}, {"view_height", 1}},
         "/camera/view_height invalid_value");
+  check("/layers", "albedo", "/layers wrong_type");
+  check("/layers", {"albedo", "beauty"}, "/layers/1 invalid_value");
+  check("/layers", {"albedo", 7}, "/layers/1 invalid_value");
+  check("/layers", {"depth", "depth"}, "/layers/1 invalid_value");
+  check("/layers", std::vector<std::string>(9, "depth"), "/layers wrong_type");
   check("/effects", "none", "/effects invalid_value");
   check("/effects", "without=refraction", "/effects invalid_value");
   check("/effects", 3, "/effects wrong_type");

@@ -50,6 +50,28 @@ TEST(CliOptions, ABatchIsLocalOrWaitedForAgain) {
   EXPECT_TRUE(again.options.batch.cancel_on_interrupt);
 }
 
+TEST(CliOptions, ReadsLayersForWhatCanHoldThem) {
+  const auto read = cli({"render", "a.obj", "-o", "a.exr", "--layers", "direct,albedo"});
+  EXPECT_EQ(read.exit_code, -1);
+  EXPECT_EQ(read.options.picture.request.layers, "albedo,direct");
+  EXPECT_EQ(cli({"submit", "a.obj", "--layers", "depth"}).exit_code, -1);
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.exr", "--layers", "albedo,beauty"}).exit_code, 2);
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--layers", "albedo"}).exit_code, 2) << "a PNG holds none";
+  EXPECT_EQ(cli({"render", "a.obj", "-o", "a.exr", "--half", "--layers", "albedo"}).exit_code, 2);
+}
+
+TEST(CliOptions, ALensHasARadiusAndADistance) {
+  const auto lens = cli({"render", "a.obj", "-o", "a.png", "--lens", "0.05,2"}).options.picture.request.lens;
+  ASSERT_TRUE(lens);
+  EXPECT_EQ(lens->radius, 0.05);
+  EXPECT_EQ(lens->focus_distance, 2.0);
+  for (const char* wrong : {"0.1", "0.1,", "0.1,0", "-1,2", "a,b", "1,2,3", "nan,1", "1,inf"}) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", "--lens", wrong}).exit_code, 2) << wrong;
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("RADIUS,FOCUS_DISTANCE"), std::string::npos) << wrong;
+  }
+}
+
 TEST(CliOptions, ReadsStops) {
   const auto stop_of = [](std::vector<const char*> more) {
     std::vector<const char*> all{"render", "a.obj", "-o", "a.png"};

@@ -135,6 +135,15 @@ TEST(EffectRows, Conditions) {
       {"diffuse 0", Effect::kDiffuseReflection, false,
        [](Case& c) { c.scene().materials[0].diffuse = Rgb(0.0F); }},
       {"transparent, but specular alone", Effect::kDiffuseTransmission, false, glass(1.5F)},
+      {"a matte surface that covers half", Effect::kAlphaCoverage, true,
+       [](Case& c) { c.material().coverage = 0.5F; }},
+      {"a matte surface that covers all", Effect::kAlphaCoverage, false,
+       [](Case& c) { c.material().coverage = 1.0F; }},
+      {"a leaf of glTF", Effect::kDiffuseTransmission, true,
+       [](Case& c) {
+         c.material().model = SurfaceModel::kMicrofacet;
+         c.material().facets.diffuse_through = Rgb(0.2F);
+       }},
       {"specular 0, whatever the exponent", Effect::kGlossyLobes, false,
        [](Case& c) { c.material().specular_exp = 10.0; }},
       {"a lobe as sharp as a mirror", Effect::kGlossyLobes, false, glass(1.5F)},

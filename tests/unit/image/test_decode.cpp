@@ -3,8 +3,11 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <limits>
+
 #include "raykiln/image/decode.hpp"
 #include "raykiln/image/encode.hpp"
+#include "raykiln/image/layers.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -77,6 +80,22 @@ TEST(Decode, NoiseSurvivesTheFile) {
   EXPECT_EQ(image.image.rgb, gradient().rgb);
   EXPECT_EQ(image.error, error);
   EXPECT_EQ(image.samples, samples);
+}
+
+TEST(Decode, FurtherLayersKeepTheirNamesAndLeaveThePictureAlone) {
+  const std::vector<float> depth(15, std::numeric_limits<float>::infinity()), normal = gradient().rgb;
+  std::vector<ExtraPlane> planes{{"depth", depth}, {"normal", normal}};
+  planes[0].channels = spec(Layer::kDepth).exr_channels;
+  planes[1].channels = spec(Layer::kNormal).exr_channels;
+  const auto encoded = encode_exr(gradient(), {}, planes);
+  ASSERT_TRUE(std::holds_alternative<Bytes>(encoded));
+  const Bytes& bytes = std::get<Bytes>(encoded);
+  EXPECT_EQ(decoded(bytes).image.rgb, gradient().rgb);
+  const std::string head(bytes.begin(), bytes.begin() + 500);
+  for (const char* name : {"R", "Z", "N.X", "N.Y", "N.Z"}) {
+    // A channel: its name, and 2 for 32-bit floats.
+    EXPECT_NE(head.find(std::string(name) + '\0' + '\2'), std::string::npos) << name;
+  }
 }
 
 TEST(Decode, LayersAndGrey) {

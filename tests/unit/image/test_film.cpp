@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "raykiln/image/film.hpp"
+#include "raykiln/image/layers.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -151,6 +152,64 @@ TEST(Film, AHundredMillionOnesAddUp) {
   for (int i = 0; i < 100; ++i) film.fold(kOnePixel, block);
   EXPECT_EQ(film.plane("beauty")[0], 1e8);
   EXPECT_EQ(film.resolve().rgb[0], 1.0F);
+}
+
+LayerBlock layer_block(std::uint64_t index, double albedo, bool counts = true) {
+  LayerSet set = *layer_set_of("albedo,depth,material_id");
+  LayerBlock block = make_layer_block(sample_block(index), set, 1);
+  LayerSample sample;
+  sample.met = true;
+  sample.albedo = Rgbd(albedo);
+  sample.depth = albedo;
+  sample.material = static_cast<std::uint32_t>(10.0 * albedo);
+  add_sample(block, 0, block.block.first, sample, counts);
+  return block;
+}
+
+TEST(LayerFilm, HoldsMeansAndTheFirstSamplesNumber) {
+  LayerFilm film(*layer_set_of("albedo,depth,material_id"), 1, 1);
+  for (std::uint64_t b = 0; b < 3; ++b) film.fold(kOnePixel, layer_block(b, 1.0 + static_cast<double>(b)));
+  const std::vector<float> three{3.0F}, none{0.0F};
+  EXPECT_EQ(film.resolve(Layer::kAlbedo, three), (std::vector<float>{2.0F, 2.0F, 2.0F}));
+  EXPECT_EQ(film.resolve(Layer::kDepth, none), (std::vector<float>{2.0F})) << "of what met something";
+  EXPECT_EQ(film.resolve(Layer::kMaterialId, three), (std::vector<float>{10.0F}));
+  EXPECT_EQ(film.resolve(Layer::kAlbedo, none), (std::vector<float>(3, 0.0F)));
+  EXPECT_TRUE(film.resolve(Layer::kNormal, three).empty()) << "not asked for";
+  EXPECT_THROW(film.fold({0, 0, 2, 1}, layer_block(0, 1.0)), std::invalid_argument);
+  EXPECT_THROW((void)film.resolve(Layer::kAlbedo, {}), std::invalid_argument);
+}
+
+TEST(LayerFilm, KeepsAnIncompleteBlockApart) {
+  LayerFilm film(*layer_set_of("albedo,depth,material_id"), 1, 1);
+  film.fold(kOnePixel, layer_block(0, 1.0));
+  LayerBlock part = layer_block(1, 5.0);
+  part.block.complete = false;
+  film.fold(kOnePixel, part);
+  const std::vector<float> one{1.0F}, two{2.0F};
+  EXPECT_EQ(film.resolve(Layer::kAlbedo, two)[0], 3.0F);
+  film.fold(kOnePixel, layer_block(1, 2.0));
+  EXPECT_EQ(film.resolve(Layer::kAlbedo, two)[0], 1.5F);
+  film.fold(kOnePixel, part);
+  film.drop_incomplete();
+  EXPECT_EQ(film.resolve(Layer::kAlbedo, two)[0], 1.5F);
+}
+
+TEST(LayerFilm, ASampleThatIsDroppedLeavesOnlyItsNumber) {
+  LayerFilm film(*layer_set_of("albedo,depth,material_id"), 1, 1);
+  film.fold(kOnePixel, layer_block(0, 1.0, false));
+  const std::vector<float> none{0.0F};
+  EXPECT_EQ(film.resolve(Layer::kMaterialId, none)[0], 10.0F);
+  EXPECT_TRUE(std::isinf(film.resolve(Layer::kDepth, none)[0]));
+}
+
+TEST(LayerSet, ReadsNamesInAnyOrderAndWritesThemInOne) {
+  EXPECT_EQ(layer_set_text(*layer_set_of("direct,albedo")), "albedo,direct");
+  EXPECT_TRUE(layer_set_of("")->empty());
+  for (const char* wrong : {"albedo,", ",albedo", "albedo,albedo", "Albedo", "albedo direct", "beauty"}) {
+    EXPECT_FALSE(layer_set_of(wrong)) << wrong;
+  }
+  EXPECT_EQ(LayerFilm::bytes_per_pixel(LayerSet()), 0U);
+  EXPECT_EQ(LayerFilm::bytes_per_pixel(*layer_set_of("albedo,depth")), 2 * 5 * 8 + 4 * 4U);
 }
 
 }  // namespace

@@ -59,6 +59,27 @@ TEST(PictureFile, PngKeepsItsBytesAndColoursAreNotMultipliedByAlpha) {
   }
 }
 
+TEST(PictureFile, AlphaIsOneValueAndNothingWhereThereIsNone) {
+  const auto alone = [](const Bytes& bytes, PictureChannels wanted) {
+    auto result = read_picture_file(bytes, {.max_pixels = 100}, wanted);
+    EXPECT_TRUE(std::holds_alternative<PictureFile>(result));
+    return std::get<PictureFile>(std::move(result));
+  };
+  const auto with = written("png", {"R", "G", "B", "A"}, OIIO::TypeDesc::UINT8);
+  const auto without = written("png", {"R", "G", "B"}, OIIO::TypeDesc::UINT8);
+  for (const PictureChannels wanted : {PictureChannels::kAlpha, PictureChannels::kAlphaOrGrey}) {
+    const PictureFile picture = alone(with, wanted);
+    EXPECT_EQ(picture.channels, 1);
+    EXPECT_EQ(picture.srgb8, (std::vector<std::uint8_t>{4, 24, 44, 64, 84, 104}));
+  }
+  const PictureFile none = alone(without, PictureChannels::kAlpha);
+  EXPECT_TRUE(none.srgb8.empty() && none.linear.empty());
+  EXPECT_EQ(alone(without, PictureChannels::kAlphaOrGrey).srgb8, (std::vector<std::uint8_t>{2, 22, 42, 62, 82, 102}));
+  const PictureFile fine = alone(written("png", {"R", "G", "B", "A"}, OIIO::TypeDesc::UINT16), PictureChannels::kAlpha);
+  ASSERT_EQ(fine.linear.size(), 6U);
+  EXPECT_NEAR(fine.linear[5], 104.0 / 255.0, 2e-5);  // no curve
+}
+
 TEST(PictureFile, GreyIsAllThree) {
   const PictureFile picture = read(written("png", {"Y"}, OIIO::TypeDesc::UINT8));
   ASSERT_EQ(picture.srgb8.size(), 18U);

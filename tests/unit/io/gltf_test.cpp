@@ -363,10 +363,21 @@ TEST(GltfMaterial, EmissionHasAStrength) {
 
 TEST(GltfMaterial, AlphaCountsOnlyWhenBlended) {
   const Json pbr = {{"baseColorFactor", {1, 1, 1, 0.25}}, {"metallicFactor", 0}};
-  EXPECT_EQ(material_of({{"pbrMetallicRoughness", pbr}}).facets.coverage, 1.0F);
+  EXPECT_EQ(material_of({{"pbrMetallicRoughness", pbr}}).coverage, 1.0F);
   const Json blend = {{"pbrMetallicRoughness", pbr}, {"alphaMode", "BLEND"}};
-  EXPECT_FLOAT_EQ(material_of(blend).facets.coverage, 0.25F);
+  EXPECT_FLOAT_EQ(material_of(blend).coverage, 0.25F);
   EXPECT_EQ(material_of(blend).transparent, 0.0F);
+}
+
+TEST(GltfMaterial, OneSideUnlessItSaysTwoOrLightGoesThrough) {
+  EXPECT_TRUE(material_of({{"doubleSided", false}}).one_sided);
+  EXPECT_TRUE(material_of(Json::object()).one_sided);
+  EXPECT_FALSE(material_of({{"doubleSided", true}}).one_sided);
+  for (const char* name : {"transmission", "diffuse_transmission"}) {
+    const std::string factor = name[0] == 't' ? "transmissionFactor" : "diffuseTransmissionFactor";
+    const Json extension = {{factor, 0.5}};
+    EXPECT_FALSE(material_of({{"extensions", {{std::string("KHR_materials_") + name, extension}}}}).one_sided);
+  }
 }
 
 TEST(GltfMaterial, EqualNamesStayApart) {

@@ -54,6 +54,27 @@ INSTANTIATE_TEST_SUITE_P(
             10, 11.0}),
     [](const auto& row) { return std::string(row.param.name); });
 
+std::vector<std::uint32_t> objects_of(const Scene& scene) {
+  std::vector<std::uint32_t> objects;
+  for (std::uint32_t id = 0; id < scene.mesh.triangles.size(); ++id) objects.push_back(object_of(scene.mesh, id));
+  return objects;
+}
+
+TEST(Obj, ObjectsAreTheirStatementsAndGroupsElse) {
+  using Ids = std::vector<std::uint32_t>;
+  using Names = std::vector<std::string>;
+  const std::string flat = "v 5 0 0\nf 1 2 5\n", face = "f 1 2 3\n";  // 1, 2 and 5 lie in a line
+  const auto by_object = expect_scene({{"a.obj", kSquare + "o none\no a\ng x\n" + face + "g y\n" + face + "o b\n" + flat +
+                                                     face + "o a\n" + face + "o last\n" + flat}});
+  EXPECT_EQ(by_object.scene.object_names, (Names{"a", "b", "last"}));
+  EXPECT_EQ(objects_of(by_object.scene), (Ids{0, 0, 1, 0}));
+  const auto by_group = expect_scene({{"a.obj", kSquare + face + "g x\n" + face + "g y\nf 1 2 9\nf 2 3 4\nv 0 0 1\n" +
+                                                    "v 0 0 2\nv 0 0 3\nv 0 0 4\nv 0 0 5\ng z\n" + face}});
+  EXPECT_EQ(by_group.scene.object_names, (Names{"", "x", "y", "z"}));
+  // The face that had to wait for its vertex comes last, and is of its object.
+  EXPECT_EQ(objects_of(by_group.scene), (Ids{0, 1, 2, 3, 2}));
+}
+
 TEST(Obj, LinesAndPointsAreListedAndIgnored) {
   const auto imported = expect_scene({{"a.obj", kSquare + "l 1 2\np 1\np 2\nf 1 2 3\n"}});
   EXPECT_EQ(count_of(imported, ImportWarningCode::kIgnoredElement), 3U);

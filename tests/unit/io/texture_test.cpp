@@ -330,6 +330,99 @@ TEST(GltfTexture, WhatCannotBeHadIsNamed) {
   EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 1U);
 }
 
+/// 2 x 1 texels of alpha 0 and 200.
+std::string png_with_alpha() {
+  static constexpr unsigned char kBytes[] = {
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+      0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xf4,
+      0x22, 0x7f, 0x8a, 0x00, 0x00, 0x00, 0x11, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0xe0,
+      0x12, 0x91, 0x63, 0xd0, 0x30, 0xb2, 0x39, 0x01, 0x00, 0x04, 0x0f, 0x01, 0x9b, 0xcc, 0x51,
+      0xa4, 0x8a, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  return {std::begin(kBytes), std::end(kBytes)};
+}
+
+ImportedScene covered(const std::string& mode, const std::string& picture, const char* colour = "1, 1, 1") {
+  Texts files = gltf(R"({"pbrMetallicRoughness": {"baseColorFactor": [)" + std::string(colour) +
+                         R"(, 0.5], "baseColorTexture": {"index": 1}}, "emissiveFactor": [1, 1, 1])" + mode + "}",
+                     kImages);
+  files["x y.png"] = picture;
+  return expect_scene(files);
+}
+
+TEST(GltfTexture, AlphaOfTheBaseColourIsCoverage) {
+  for (const char* colour : {"1, 1, 1", "0, 0, 0"}) {  // the colour of black is not read, its alpha is
+    const auto mask = covered(R"(, "alphaMode": "MASK", "alphaCutoff": 0.25)", png_with_alpha(), colour);
+    ASSERT_NE(mask.scene.textures, nullptr);
+    const MaterialTextures& used = mask.scene.textures->materials[0];
+    ASSERT_TRUE(used.alpha.used());
+    EXPECT_EQ(used.base.used(), colour[0] == '1');
+    EXPECT_EQ(used.alpha_cutoff, 0.25);
+    EXPECT_EQ(used.alpha.wrap_u, TextureWrap::kMirror);
+    const TextureImage& image = mask.scene.textures->images[used.alpha.image];
+    EXPECT_EQ(image.channels, 1);
+    EXPECT_EQ(image.srgb8, (std::vector<std::uint8_t>{0, 200}));
+    EXPECT_EQ(mask.scene.materials[0].coverage, 0.5F);
+    EXPECT_EQ(mask.scene.materials[0].emission, Rgb(1.0F));
+    EXPECT_EQ(mask.scene.textures->uv_sets[0].corners.size(), 1U);
+    EXPECT_EQ(count_of(mask, Warn::kIgnoredFeature), 0U);
+  }
+  const auto blend = covered(R"(, "alphaMode": "BLEND")", png_with_alpha());
+  EXPECT_TRUE(blend.scene.textures->materials[0].alpha.used());
+  EXPECT_FALSE(blend.scene.textures->materials[0].alpha_cutoff.has_value());
+  EXPECT_EQ(blend.scene.materials[0].coverage, 0.5F);
+  const auto opaque = covered("", png_with_alpha());
+  EXPECT_FALSE(opaque.scene.textures->materials[0].alpha.used());
+  EXPECT_EQ(opaque.scene.materials[0].coverage, 1.0F);
+}
+
+TEST(GltfTexture, APictureWithoutAlphaLeavesTheFactor) {
+  const auto blend = covered(R"(, "alphaMode": "BLEND")", png());
+  EXPECT_FALSE(blend.scene.textures->materials[0].alpha.used());
+  EXPECT_EQ(blend.scene.materials[0].coverage, 0.5F);
+  const auto shown = covered(R"(, "alphaMode": "MASK")", png());
+  EXPECT_EQ(shown.scene.materials[0].coverage, 1.0F);
+  const auto hidden = covered(R"(, "alphaMode": "MASK", "alphaCutoff": 0.6)", png());
+  EXPECT_EQ(hidden.scene.materials[0].coverage, 0.0F);
+}
+
+TEST(GltfTexture, DiffuseTransmissionHasAShareAndAColour) {
+  const auto leaf = [](const char* share) {
+    Texts files = gltf(R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0},
+        "extensions": {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": )" +
+                           std::string(share) + R"(, "diffuseTransmissionColorFactor": [1, 0.5, 0.25],
+          "diffuseTransmissionTexture": {"index": 1}, "diffuseTransmissionColorTexture": {"index": 0}}}})",
+                       std::string(R"("extensionsRequired": ["KHR_materials_diffuse_transmission"], )") + kImages);
+    files["x y.png"] = png_with_alpha();
+    return expect_scene(files);
+  };
+  const auto imported = leaf("0.75");
+  const Material& material = imported.scene.materials[0];
+  EXPECT_EQ(material.diffuse, Rgb(0.125F));
+  EXPECT_EQ(material.facets.diffuse_through, Rgb(0.75F, 0.375F, 0.1875F));
+  const MaterialTextures& used = imported.scene.textures->materials[0];
+  EXPECT_EQ(used.metal.through, 0.75F);
+  EXPECT_EQ(imported.scene.textures->images[used.through.image].srgb8, (std::vector<std::uint8_t>{0, 200}));
+  EXPECT_EQ(imported.scene.textures->images[used.through_colour.image].channels, 3);
+  EXPECT_EQ(leaf("0").scene.textures, nullptr);
+}
+
+TEST(ObjTexture, OpacityIsTheAlphaOrTheBrightnessOfItsPicture) {
+  const std::string mtl = "newmtl a\nKd 1 1 1\nd 0.5\nmap_d tex/x.png\n";
+  for (const bool alpha : {true, false}) {
+    const auto imported =
+        expect_scene({{"a.obj", kObj}, {"m.mtl", mtl}, {"tex/x.png", alpha ? png_with_alpha() : png()}});
+    ASSERT_NE(imported.scene.textures, nullptr);
+    const std::uint32_t id = imported.scene.mesh.material_ids[0];
+    const MaterialTextures& used = imported.scene.textures->materials[id];
+    ASSERT_TRUE(used.alpha.used());
+    EXPECT_FALSE(used.alpha_cutoff.has_value());
+    EXPECT_EQ(imported.scene.textures->images[0].srgb8,
+              alpha ? (std::vector<std::uint8_t>{0, 200}) : (std::vector<std::uint8_t>{0, 255}));
+    EXPECT_EQ(imported.scene.materials[id].coverage, 0.5F);  // no longer a pane
+    EXPECT_EQ(imported.scene.materials[id].transparent, 0.0F);
+  }
+}
+
 TEST(GltfTexture, ATextureOfBlackIsNotRead) {
   const auto imported = expect_scene(gltf(
       R"({"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "baseColorTexture": {"index": 2}},

@@ -61,6 +61,14 @@ TEST(JobRequest, DigestTellsRequestsApart) {
   other.seed = 1;
   EXPECT_NE(request_digest(good()), request_digest(other));
   other = good();
+  other.layers = "albedo";
+  EXPECT_NE(request_digest(good()), request_digest(other));
+  EXPECT_NE(result_digest(good(), ""), result_digest(other, ""));
+  JobSnapshot kept;
+  kept.id = "j_1";
+  kept.request = other;
+  EXPECT_EQ(decode_job(encode_job(kept))->request.layers, "albedo");
+  other = good();
   other.camera = std::string("0");
   EXPECT_NE(request_digest(good()), request_digest(other)) << "a name is not an index";
 }
@@ -99,6 +107,7 @@ TEST(JobRequest, ResultDigestLeavesOutWhatChangesNoPicture) {
       [](JobRequest& r) { r.adaptive = true; },
       [](JobRequest& r) { r.filter = PixelFilter::kBlackmanHarris; },
       [](JobRequest& r) { r.emitter_choice = EmitterChoice::kTree; },
+      [](JobRequest& r) { r.texture_filter = TextureFilter::kFootprint; },
       [](JobRequest& r) { r.lens = Lens{0.0, 1.0}; },
       [](JobRequest& r) { r.crop = Crop{0, 0, r.width, r.height}; }};
   for (const auto& change : changes) {
@@ -117,6 +126,7 @@ TEST(JobRecord, ReadsBack) {
   job.request.crop = Crop{3, 4, 1000, 2000};
   job.request.filter = PixelFilter::kBlackmanHarris;
   job.request.emitter_choice = EmitterChoice::kPower;
+  job.request.texture_filter = TextureFilter::kFootprint;
   job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3, 7.5};
   job.request.seed = (1ULL << 53) - 1;
   job.request.reuse = true;

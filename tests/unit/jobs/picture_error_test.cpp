@@ -27,10 +27,10 @@ TEST(PictureError, TheUpperEndDecidesAndNotBelowTheFloor) {
   EXPECT_FALSE(target_met(rule, PictureError{})) << "unknown is not 0";
 }
 
-TEST(PictureError, DecisionsComeAtTheFloorAndThenInTenths) {
+TEST(PictureError, DecisionsComeAtTheFloorAndThenInTwentieths) {
   EXPECT_EQ(next_decision(0), 64U);
-  EXPECT_EQ(next_decision(64), 71U);
-  EXPECT_EQ(next_decision(1000), 1100U);
+  EXPECT_EQ(next_decision(64), 68U);
+  EXPECT_EQ(next_decision(1000), 1050U);
   EXPECT_GT(next_decision(1'048'576), 1'048'576U);
 }
 

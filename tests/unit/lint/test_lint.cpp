@@ -91,6 +91,16 @@ TEST(Lint, EmittersWithoutAreaAndDegenerateTriangles) {
   EXPECT_EQ(find(findings_of("usemtl lamp\nf 1 2 3\n"), "emitter_without_area"), nullptr);
 }
 
+TEST(Lint, WhatAlphaLeavesNothingOf) {
+  MemoryFiles files;
+  files.add("a.obj", std::string(kCorners) + "f 1 2 3\n");
+  ImportResult result = import_scene(files);
+  auto& imported = std::get<ImportedScene>(result);
+  EXPECT_EQ(find(lint(imported), "invisible_surface"), nullptr);
+  imported.scene.materials[imported.scene.mesh.material_ids[0]].coverage = 0.0F;
+  ASSERT_NE(find(lint(imported), "invisible_surface"), nullptr);
+}
+
 TEST(Lint, RefusedScenes) {
   const auto findings = findings_of("f 1 2 99\n");
   ASSERT_EQ(findings.size(), 1U);

@@ -168,5 +168,60 @@ TEST(Textures, ABlackEmitterIsDark) {
   EXPECT_EQ(result.stats.non_finite, 0U);
 }
 
+/// A floor with a fine pattern under a lamp and a mirror behind it, seen from `height` above.
+SceneBuilder patterned_floor(float height) {
+  TextureImage pattern{.name = "", .width = 256, .height = 256, .srgb8 = {}, .linear = {}};
+  for (int i = 0; i < 256 * 256; ++i) pattern.srgb8.insert(pattern.srgb8.end(), 3, (i / 256 + i) % 2 == 0 ? 255 : 0);
+  SceneBuilder b = square_with(diffuse_material(Rgb(0.8F)), std::move(pattern), false);
+  b.quad({Vec3f(0, 1, 0), {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}, b.material(support::mirror_material(0.9F, 1e12)));
+  b.point_light({0.5F, 0.5F, 1.0F}, Rgb(1.0F));
+  b.camera({0.5F, -0.4F * height, height}, {0.5F, 0.85F, 0.0F}, {0, 0, 1}, 0.2F);
+  return b;
+}
+
+// Light of a point light is in proportion to what the texture says: nothing but noise is lost, also in a mirror.
+TEST(Textures, AFootprintTakesTheNoiseOfAFinePattern) {
+  const auto scene = patterned_floor(2.0F).prepare();
+  RenderSettings settings = square(24, 1);
+  const Estimate exact = support::estimate(support::render_all(*scene, settings, 64));
+  settings.texture_reading = TextureReading::kFootprint;
+  const Estimate wide = support::estimate(support::render_all(*scene, settings, 64));
+  EXPECT_LT(wide.standard_error, 0.25 * exact.standard_error);
+  EXPECT_NEAR(wide.mean.x, exact.mean.x, 4.0 * exact.standard_error);
+  EXPECT_GT(exact.mean.x, 0.01);
+}
+
+// Texels wider than pixels are read as they are: no bit differs. Nor where there are no textures.
+TEST(Textures, AFootprintSmallerThanATexelChangesNoBit) {
+  SceneBuilder near = patterned_floor(2.0F);
+  near.scene().cameras.clear();
+  near.camera({0.5F, 0.49F, 0.02F}, {0.5F, 0.5F, 0.0F}, {0, 0, 1}, 0.3F);
+  for (const auto& scene : {near.prepare(), support::mixed_room().prepare()}) {
+    RenderSettings settings = square(16, 0);
+    Film exact(16, 16), wide(16, 16);
+    merge(exact, support::render_all(*scene, settings, 4));
+    settings.texture_reading = TextureReading::kFootprint;
+    merge(wide, support::render_all(*scene, settings, 4));
+    EXPECT_EQ(exact.resolve().rgb, wide.resolve().rgb);
+  }
+}
+
+TEST(Textures, AFootprintIsTheSameHoweverTheWorkIsCut) {
+  const SceneBuilder b = patterned_floor(1.0F);
+  const auto scene = b.prepare();
+  RenderSettings settings = square(16, 4);
+  settings.texture_reading = TextureReading::kFootprint;
+  Film whole(16, 16), parts(16, 16);
+  merge(whole, support::render_all(*scene, settings, 8));
+  settings.traversal = Traversal::kBruteForce;
+  for (int y = 0; y < 16; y += 4) {
+    merge(parts, render_tile(*scene, settings, {0, y, 5, y + 4}, blocks_for(8), {}));
+    merge(parts, render_tile(*scene, settings, {5, y, 16, y + 4}, blocks_for(8), {}));
+  }
+  EXPECT_EQ(whole.plane("beauty"), parts.plane("beauty"));
+  const auto notices = render_notices(settings, b.scene(), {});
+  EXPECT_TRUE(std::any_of(notices.begin(), notices.end(), [](const auto& n) { return n.code == "textures_by_footprint"; }));
+}
+
 }  // namespace
 }  // namespace raykiln::render

@@ -14,6 +14,17 @@ const std::vector<double> kExponents{0.0, 0.5, 1.0, 10.0, 1e4, 1e6, 1e7, 1e8, 1e
 
 VertexKey key(std::uint64_t i) { return vertex_key(path_key(3, i, 0), 0, 0); }
 
+TEST(Warp, TurnsAboutTheAxisAreThoseOfSineAndCosine) {
+  for (int i = 0; i <= 4096; ++i) {
+    for (const double v : {i / 4097.0, std::nextafter(i / 4096.0, 0.0)}) {
+      if (v >= 1.0) continue;
+      const Vec3f w = around_axis({0.0F, 0.0F, 1.0F}, 1.0, v);
+      EXPECT_NEAR(static_cast<double>(w.x), std::cos(2.0 * kPi * v), 0x1p-24) << v;
+      EXPECT_NEAR(static_cast<double>(w.y), std::sin(2.0 * kPi * v), 0x1p-24) << v;
+    }
+  }
+}
+
 // v = -(e + 1) ln cos is Exp(1), measured on the float direction itself and not on the number that
 // made it. 11 exponents at p > 1e-4: false alarm 1.1e-3.
 TEST(Warp, LobeOfEveryExponentHasItsDistribution) {

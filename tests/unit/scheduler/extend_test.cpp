@@ -21,6 +21,7 @@ class Extend : public ::testing::Test {
   }
   JobSnapshot rendered(const StopRule& stop, int tile = 16) {
     JobRequest request = small_job(scene_);
+    request.layers = "albedo,depth,object_id,direct,indirect";
     request.stop = stop;
     request.tile = tile;
     return ended(rig_.submit(request));
@@ -33,12 +34,14 @@ class Extend : public ::testing::Test {
     return answer_of<SubmittedJob>([&](auto reply) { rig_.scheduler->extend(extension, reply); });
   }
   JobSnapshot extended(const JobId& job, const StopRule& stop) { return ended(ask(job, stop)); }
-  /// Picture, errors and samples.
+  /// Picture, errors, samples and what else is asked for.
   std::vector<float> layers(const JobId& id) {
     const auto image = answer_of<JobImagePtr>([&](auto reply) { rig_.scheduler->image(id, "all", reply); });
     std::vector<float> all = (*image)->image.rgb;
     all.insert(all.end(), (*image)->error.begin(), (*image)->error.end());
     all.insert(all.end(), (*image)->samples.begin(), (*image)->samples.end());
+    EXPECT_EQ((*image)->layers.size(), 5U);
+    for (const StoredLayer& layer : (*image)->layers) all.insert(all.end(), layer.values.begin(), layer.values.end());
     return all;
   }
 
@@ -120,6 +123,22 @@ TEST_F(Extend, ToWhatIsReachedAlreadyEndsAtOnce) {
   const JobSnapshot late = extended(early.id, {.samples = 100'000, .error = 1.0});
   EXPECT_EQ(late.done_by, DoneBy::kError);
   EXPECT_EQ(late.progress.samples_per_pixel, 256.0);
+}
+
+// Their film is made, and what they go on from is read, on the thread of the disk.
+TEST_F(Extend, OfLargeFilmsGivesTheSamePicture) {
+  const auto whole = layers(rendered({.samples = 40}).id);
+  rig_.scheduler.reset();
+  rig_.judged_at_once_px = 0;
+  rig_.start();
+  const JobSnapshot late = extended(rendered({.samples = 20}).id, {.samples = 40});
+  EXPECT_EQ(late.continued_samples, 16.0);
+  EXPECT_EQ(layers(late.id), whole);
+  // One that is cancelled before it has a film ends, and so does what comes after it.
+  const auto cancelled = rig_.submit(small_job(scene_, 1'000'000));
+  (void)rig_.cancel(cancelled->job.id);
+  EXPECT_EQ(rig_.wait_final(cancelled->job.id).state, JobState::kCancelled);
+  EXPECT_EQ(layers(rendered({.samples = 40}).id), whole);
 }
 
 TEST_F(Extend, IsRefusedWhereItAddsNothing) {

@@ -1,6 +1,7 @@
 // A job from submission to its end.
 #include <gtest/gtest.h>
 
+#include "raykiln/scheduler/render_inputs.hpp"
 #include "support/server_rig.hpp"
 #include "support/temp_directory.hpp"
 
@@ -83,6 +84,16 @@ TEST_F(Life, RefusesWhatCannotBe) {
   bad.width = bad.height = 16'384;
   bad.tile = 64;
   EXPECT_EQ(rig.submit(bad).error().code, "film_too_large");
+  bad.width = 4000;
+  bad.height = 3500;
+  const std::uint64_t picture = film_memory(bad);
+  EXPECT_LT(picture, rig.config.scheduler.max_film_bytes);
+  bad.layers = "albedo,normal,depth,object_id,material_id,emission,direct,indirect";
+  EXPECT_EQ(film_memory(bad), picture + std::uint64_t{4000} * 3500 * (2 * 19 * 8 + 18 * 4)) << "sums twice, values once";
+  EXPECT_EQ(rig.submit(bad).error().code, "film_too_large");
+  bad = small_job(scene);
+  bad.layers = "beauty";
+  EXPECT_EQ(rig.wait_final(rig.submit(bad)->job.id).error->where, "/layers");
   EXPECT_EQ(rig.get("nothing").error().code, "job_not_found");
   EXPECT_EQ(rig.add_scene("other", std::string(64, '0')).error().code, "digest_mismatch");
 }

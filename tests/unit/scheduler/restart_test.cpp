@@ -39,6 +39,43 @@ TEST(Restart, UnfinishedJobsRunAgainAndFinishedOnesStay) {
   EXPECT_EQ(rig.wait_final(running).state, JobState::kCancelled);
 }
 
+TEST(Restart, LayersStayAndPartialOnesAreThere) {
+  const TempDirectory directory;
+  JobRequest request;
+  std::string done;
+  std::vector<StoredLayer> before;
+  const auto layers_of = [](ServerRig& rig, const std::string& id) {
+    const auto image = answer_of<JobImagePtr>([&](auto reply) { rig.scheduler->image(id, "all", reply); });
+    return image ? (*image)->layers : std::vector<StoredLayer>{};
+  };
+  {
+    ServerRig rig(directory.path());
+    request = small_job(rig.add_scene("a room")->scene.record.id);
+    request.layers = "normal,depth,emission";
+    done = rig.submit(request)->job.id;
+    EXPECT_EQ(rig.wait_final(done).state, JobState::kCompleted);
+    before = layers_of(rig, done);
+    ASSERT_EQ(before.size(), 3U);
+    EXPECT_EQ(before[0].name, "normal");
+    EXPECT_EQ(before[1].values.size(), 96U * 64U);
+    JobRequest endless = request;
+    endless.stop.samples = 1'000'000;
+    const auto running = rig.submit(endless)->job.id;
+    rig.follow(running, [](const auto& s) { return s.image_revision > 0; });
+    EXPECT_EQ(layers_of(rig, running).size(), 3U) << "while it is rendered";
+    (void)rig.cancel(running);
+    (void)rig.wait_final(running);
+    EXPECT_EQ(layers_of(rig, running).size(), 3U) << "of the partial picture";
+  }
+  ServerRig rig(directory.path());
+  const auto after = layers_of(rig, done);
+  ASSERT_EQ(after.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(after[i].values, before[i].values) << before[i].name;
+  const std::string again = rig.submit(request)->job.id;
+  rig.wait_final(again);
+  EXPECT_EQ(layers_of(rig, again)[1].values, before[1].values);
+}
+
 TEST(Restart, ResultsAreReusedByTheSameEngineAlone) {
   const TempDirectory directory;
   Config config;

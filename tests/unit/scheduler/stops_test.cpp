@@ -107,6 +107,21 @@ TEST(Stops, ATargetOutOfReachEndsByTimeAndSaysSo) {
   EXPECT_FALSE(target_met(ended.job.request.stop, *ended.job.accuracy));
 }
 
+/// Made strip by strip while samples come in.
+void expect_error_layers(const JobImage& image) {
+  EXPECT_FALSE(image.is_final);
+  ASSERT_EQ(image.image.rgb.size(), std::size_t{3} * 160 * 120);
+  ASSERT_EQ(image.error.size(), image.image.rgb.size());
+  ASSERT_EQ(image.samples.size(), std::size_t{160} * 120);
+  ASSERT_EQ(image.seconds.size(), image.samples.size());
+  EXPECT_GE(*std::min_element(image.samples.begin(), image.samples.end()), 1.0F);
+  EXPECT_GT(*std::min_element(image.seconds.begin(), image.seconds.end()), 0.0F);
+  std::size_t wrong = 0;  // an error is known from two samples on
+  for (std::size_t i = 0; i < image.error.size(); ++i) wrong += (image.error[i] >= 0.0F) == (image.samples[i / 3] >= 2.0F) ? 0U : 1U;
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(*std::min_element(image.image.rgb.begin(), image.image.rgb.end()), 0.0F) << "every row is there";
+}
+
 TEST(Stops, LargePicturesAreLookedAtOnASampleAndJudgedInFullInTheEnd) {
   const TempDirectory directory;
   Config config;
@@ -115,25 +130,62 @@ TEST(Stops, LargePicturesAreLookedAtOnASampleAndJudgedInFullInTheEnd) {
   JobRequest request = small_job(rig.add_scene("a room")->scene.record.id, 32);
   request.width = 160;
   request.height = 120;
-  std::vector<JobSnapshot> seen;
-  const JobSnapshot last = rig.wait_final(rig.submit(request)->job.id, &seen);
   const auto sampled = [](const JobSnapshot& s) {
     return s.accuracy && std::count(s.accuracy->notices.begin(), s.accuracy->notices.end(), "error_sampled") > 0;
   };
-  EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), sampled));
-  EXPECT_FALSE(sampled(last));
-  // Who cancels a large picture gets a look at what it has by then.
+  EXPECT_FALSE(sampled(rig.wait_final(rig.submit(request)->job.id)));
+  // However busy the machine is, a job without an end is looked at before it ends.
   request.stop.samples = 1'000'000;
+  const std::string looked_at = rig.submit(request)->job.id;
+  rig.follow(looked_at, sampled);
+  (void)rig.cancel(looked_at);
+  rig.wait_final(looked_at);
+  // Who cancels a large picture gets a look at what it has by then.
   rig.scheduler.reset();
   rig.judged_at_once_px = 0;
   rig.config.scheduler.look_share = 0.0;
   rig.start();
   const std::string id = rig.submit(request)->job.id;
   rig.follow(id, [](const JobSnapshot& s) { return s.progress.samples_per_pixel >= 4.0; });
+  const auto running = answer_of<JobImagePtr>([&](auto reply) { rig.scheduler->image(id, "all", reply); });
+  ASSERT_TRUE(running);
+  expect_error_layers(**running);
   (void)rig.cancel(id);
   const JobSnapshot cancelled = rig.wait_final(id);
   EXPECT_TRUE(sampled(cancelled));
   EXPECT_GE(cancelled.accuracy->mean_samples, 4.0);
+  // Its picture is there at once, its layers when they are stored.
+  const auto image = rig.image(id);
+  ASSERT_TRUE(image);
+  EXPECT_EQ((*image)->revision, cancelled.revision);
+  const auto all = answer_of<JobImagePtr>([&](auto reply) { rig.scheduler->image(id, "all", reply); });
+  ASSERT_TRUE(all);
+  EXPECT_TRUE((*all)->is_final);
+  EXPECT_EQ((*all)->image.rgb, (*image)->image.rgb);
+  EXPECT_EQ((*all)->samples.size(), std::size_t{160} * 120);
+  EXPECT_EQ((*all)->error.size(), 3 * (*all)->samples.size());
+}
+
+// Its final state comes before the store has it: should that fail, the record does not go on naming it.
+TEST(Stops, AFullStoreTakesThePictureOfALargeCancelledJob) {
+  const TempDirectory directory;
+  Config config;
+  config.store.max_bytes = 300'000;
+  ServerRig rig(directory.path(), 2, {}, config);
+  rig.scheduler.reset();
+  rig.judged_at_once_px = 0;
+  rig.start();
+  JobRequest request = small_job(rig.add_scene("a room")->scene.record.id, 1'000'000);
+  request.width = 160;
+  request.height = 120;  // 600 kB in the store
+  const std::string id = rig.submit(request)->job.id;
+  rig.follow(id, [](const JobSnapshot& s) { return s.progress.samples_per_pixel >= 1.0; });
+  (void)rig.cancel(id);
+  EXPECT_EQ(rig.wait_final(id).state, JobState::kCancelled);
+  EXPECT_FALSE(answer_of<JobImagePtr>([&](auto reply) { rig.scheduler->image(id, "all", reply); }));
+  const auto after = answer_of<JobSnapshot>([&](auto reply) { rig.scheduler->get(id, reply); });
+  EXPECT_EQ(after->image_revision, 0U);
+  EXPECT_EQ(rig.image(id).error().code, "image_not_ready");
 }
 
 TEST(Stops, AdaptiveJobsDoNotDependOnThreadsAndAreMadeAgainFromTheirSamples) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "raykiln/sampling/random.hpp"
 #include "raykiln/shading/emitters.hpp"
@@ -17,14 +18,16 @@ Vec3f point(std::uint64_t i, std::uint64_t what, double size) {
   return Vec3f(size * (Vec3d(number(i, what), number(i, what + 1), number(i, what + 2)) - 0.5));
 }
 
-/// Flat pieces of sizes from 1e-3 to 1 and powers from 1e-3 to 1e3 in a cube of side 10.
-std::vector<EmitterBounds> many(std::size_t count) {
+/// Flat pieces of sizes from 1e-3 to 1 and powers from 1e-3 to 1e3 in a cube of side 10. With `fronts` two of three
+/// shine to one side, and most of those face alike, as ceilings full of lamps do.
+std::vector<EmitterBounds> many(std::size_t count, bool fronts = false) {
   std::vector<EmitterBounds> result;
   for (std::uint64_t i = 0; i < count; ++i) {
     const Vec3f middle = point(i, 0, 10.0);
     const Vec3f half(static_cast<float>(std::pow(10.0, -3.0 * number(i, 3))));
-    const Vec3f axis = Vec3f(normalize(Vec3d(point(i, 4, 1.0))));
-    result.push_back({middle - half, middle + half, axis, std::pow(10.0, 6.0 * number(i, 7) - 3.0)});
+    const bool one_sided = fronts && i % 3 != 0;
+    const Vec3f axis = one_sided && i % 9 < 6 ? Vec3f(0, -1, 0) : Vec3f(normalize(Vec3d(point(i, 4, 1.0))));
+    result.push_back({middle - half, middle + half, axis, std::pow(10.0, 6.0 * number(i, 7) - 3.0), one_sided});
   }
   return result;
 }
@@ -54,9 +57,10 @@ TEST(LightTree, ProbabilitiesSumToOneWhereBothSidesCount) {
 }
 
 TEST(LightTree, DrawsAsItsProbabilitiesSay) {
-  const LightTree tree(many(60));
-  const double level = support::sidak_level(6);
-  for (std::uint64_t i = 0; i < 6; ++i) {
+  const LightTree both(many(60)), fronts(many(60, true));
+  const double level = support::sidak_level(12);
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const LightTree& tree = i % 2 == 0 ? both : fronts;
     constexpr int kDraws = 20000;
     const EmitterReceiver at = receiver(i);
     std::vector<double> seen(tree.size() + 1, 0.0), expected(tree.size() + 1);
@@ -77,22 +81,45 @@ TEST(LightTree, DrawsAsItsProbabilitiesSay) {
 }
 
 // What lies in front of a surface, however little of it, can be drawn; what is behind cannot.
+// So for what shines to a side on which the surface is not.
 TEST(LightTree, LeavesOutWhatIsBehindAndNothingElse) {
-  const auto emitters = many(400);
+  const auto emitters = many(400, true);
   const LightTree tree(emitters);
+  int turned_away = 0;
   for (std::uint64_t i = 0; i < 30; ++i) {
     const EmitterReceiver at = receiver(i);
     for (std::uint32_t e = 0; e < emitters.size(); ++e) {
-      double highest = -1e300;
+      double highest = -1e300, before = -1e300;
       for (unsigned corner = 0; corner < 8; ++corner) {
         const EmitterBounds& b = emitters[e];
         const Vec3d c((corner & 1U) != 0 ? b.hi.x : b.lo.x, (corner & 2U) != 0 ? b.hi.y : b.lo.y,
                       (corner & 4U) != 0 ? b.hi.z : b.lo.z);
         highest = std::max(highest, dot(c - Vec3d(at.p), Vec3d(at.normal)));
+        before = std::max(before, dot(Vec3d(at.p) - c, Vec3d(b.axis)));
       }
       if (std::abs(highest) < 1e-6 && !at.both_sides) continue;
-      EXPECT_EQ(tree.probability(at, e) > 0.0, at.both_sides || highest > 0.0) << i << ' ' << e;
+      if (std::abs(before) < 1e-6) continue;
+      const bool faces = !emitters[e].one_sided || before > 0.0;
+      EXPECT_EQ(tree.probability(at, e) > 0.0, (at.both_sides || highest > 0.0) && faces) << i << ' ' << e;
+      turned_away += faces ? 0 : 1;
     }
+  }
+  EXPECT_GT(turned_away, 1000);
+}
+
+// Pairs of lamps back to back: a surface above draws the one that faces it, nearly always.
+TEST(LightTree, DrawsOfTwoSidesTheOneThatFaces) {
+  std::vector<EmitterBounds> pairs;
+  for (int i = 0; i < 40; ++i) {
+    const auto x = static_cast<float>(i);
+    for (const float side : {1.0F, -1.0F}) pairs.push_back({{x, 0, 0}, {x + 0.5F, 0, 0.5F}, {0, side, 0}, 1.0 + i, true});
+  }
+  const LightTree tree(pairs);
+  for (const float height : {0.3F, 3.0F, 100.0F}) {
+    const EmitterReceiver at{{17.0F, height, 0.0F}, {0, -1, 0}, false};
+    double facing = 0.0;
+    for (std::uint32_t e = 0; e < pairs.size(); e += 2) facing += tree.probability(at, e);
+    EXPECT_GT(facing, 0.95) << height;
   }
 }
 
@@ -151,8 +178,8 @@ TEST(LightTree, StaysFlatInDegenerateCases) {
   EXPECT_NEAR(total(tree, {{0, 1, 0}, {0, 1, 0}, true}), 1.0, 1e-12);
 }
 
-/// Triangles of a mesh: the emitters' own door to the tree.
-TEST(Emitters, TreeDensityIsThatOfTheDraw) {
+/// Triangles of a mesh, every other of which shines: the emitters' own door to the tree.
+Scene striped() {
   Scene scene;
   scene.materials.resize(2);
   scene.materials[1].emission = Rgb(2.0F);
@@ -161,10 +188,16 @@ TEST(Emitters, TreeDensityIsThatOfTheDraw) {
     scene.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     scene.mesh.material_ids.push_back(i % 2);
   }
+  return scene;
+}
+
+TEST(Emitters, TreeDensityIsThatOfTheDraw) {
+  const Scene scene = striped();
   const Emitters emitters(scene);
   EXPECT_TRUE(emitters.by_tree(EmitterChoice::kAuto));
   EXPECT_TRUE(emitters.by_tree(EmitterChoice::kTree));
   EXPECT_FALSE(emitters.by_tree(EmitterChoice::kPower));
+  EXPECT_GE(emitters.bytes(), LightTree::bytes(60)) << "counted before it is built";
   for (std::uint64_t i = 0; i < 200; ++i) {
     const EmitterReceiver at = receiver(i);
     const EmitterSample s = emitters.sample(scene, vertex_key(path_key(5, i, 0), 0, 0), at);
@@ -172,6 +205,26 @@ TEST(Emitters, TreeDensityIsThatOfTheDraw) {
     EXPECT_EQ(s.pdf_area, emitters.pdf_area(scene, s.triangle, at));
     EXPECT_EQ(emitters.pdf_area(scene, s.triangle - 1, at), 0.0) << "a dark triangle";
   }
+}
+
+// The tree is built by whoever asks first, while others wait; all see one that is whole.
+TEST(Emitters, TreeIsTheSameForThreadsThatAskAtOnce) {
+  const Scene scene = striped();
+  const auto densities = [&scene](const Emitters& emitters) {
+    std::vector<double> result;
+    for (std::uint64_t i = 0; i < 50; ++i) {
+      result.push_back(emitters.sample(scene, vertex_key(path_key(6, i, 0), 0, 0), receiver(i)).pdf_area);
+    }
+    return result;
+  };
+  const std::vector<double> expected = densities(Emitters(scene));
+  const Emitters shared(scene);
+  std::vector<std::vector<double>> seen(4);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& mine : seen) threads.emplace_back([&] { mine = densities(shared); });
+  }
+  for (const auto& mine : seen) EXPECT_EQ(mine, expected);
 }
 
 }  // namespace

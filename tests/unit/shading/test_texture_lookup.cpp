@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "raykiln/math/srgb.hpp"
 #include "raykiln/shading/texture_lookup.hpp"
+#include "raykiln/shading/texture_pyramid.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -192,6 +194,66 @@ TEST(Texture, PaintMultipliesColourAndEmission) {
   EXPECT_EQ(painted.transparent, 0.25F);
   EXPECT_EQ(emission_factor(textures, 0, {0, 0.1, 0.1}), Rgbd(0.5, 0.25, 1.0));
   EXPECT_EQ(emission_factor(textures, 3, {0, 0.1, 0.1}), Rgbd(1.0));
+}
+
+double mean_of(const TextureImage& image) {
+  double sum = 0.0;
+  for (const float value : image.linear) sum += static_cast<double>(value);
+  return sum / static_cast<double>(image.linear.size());
+}
+
+// By area, whatever the sides: an odd row has texels that two of the smaller copy share.
+TEST(TexturePyramid, CopiesKeepTheMean) {
+  for (const auto& [width, height] : {std::pair{8, 8}, {5, 3}, {1, 7}, {13, 2}, {3, 1}}) {
+    TextureImage image = numbered(width, height);
+    const double mean = mean_of(image);
+    while (image.width > 1 || image.height > 1) {
+      image = halved(image, false);
+      EXPECT_NEAR(mean_of(image), mean, 1e-5 * mean) << width << ' ' << height << ' ' << image.width;
+    }
+    EXPECT_EQ(image.linear.size(), 3U);
+  }
+}
+
+// Half black, half white is half the light as a colour, half the number as a number.
+TEST(TexturePyramid, ColoursAreMeansOfLight) {
+  const TextureImage image{.name = "", .width = 2, .height = 1, .srgb8 = {0, 0, 0, 255, 255, 255}, .linear = {}};
+  EXPECT_EQ(halved(image, false).srgb8, (std::vector<std::uint8_t>{188, 188, 188}));
+  EXPECT_EQ(halved(image, true).srgb8, (std::vector<std::uint8_t>{128, 128, 128}));
+}
+
+/// 64 x 64 texels, black and white by turns, over a triangle of legs 1 that has half of the picture.
+SurfaceTextures checked() {
+  SurfaceTextures textures;
+  TextureImage image{.name = "", .width = 64, .height = 64, .srgb8 = {}, .linear = {}};
+  for (int i = 0; i < 64 * 64; ++i) image.linear.insert(image.linear.end(), 3, (i / 64 + i % 64) % 2 == 0 ? 0.0F : 1.0F);
+  textures.images.push_back(std::move(image));
+  textures.uv_sets[0].coordinates = {{0, 0}, {1, 0}, {0, 1}};
+  textures.uv_sets[0].corners = {{0, 1, 2}};
+  textures.materials.resize(1);
+  textures.materials[0].base.image = 0;
+  return textures;
+}
+
+TEST(TexturePyramid, AFootprintReadsWhatItCovers) {
+  const SurfaceTextures textures = checked();
+  const TexturePyramids pyramids(&textures);
+  pyramids.make();
+  const auto read = [&](double width_in_texels) {
+    const double width = width_in_texels / 64.0;  // of legs, which are 1; twice the area is 1
+    const TrianglePlace at{0, 0.5 / 64, 0.5 / 64, &pyramids, width * width};
+    return texture_value(textures, textures.materials[0].base, at).x;
+  };
+  const double exact = texture_value(textures, textures.materials[0].base, {0, 0.5 / 64, 0.5 / 64}).x;
+  EXPECT_EQ(exact, 0.0);
+  for (const double width : {0.0, 0.5, 1.0, 2.0}) EXPECT_EQ(read(width), exact) << width;
+  EXPECT_NEAR(read(2.0 * std::sqrt(2.0)), 0.25, 1e-6);  // half way to the first copy, which is grey
+  for (const double width : {4.0, 5.0, 64.0, 1e9, std::numeric_limits<double>::infinity()}) {
+    EXPECT_NEAR(read(width), 0.5, 1e-6) << width;
+  }
+  EXPECT_EQ(read(std::numeric_limits<double>::quiet_NaN()), exact);
+  EXPECT_GE(pyramids.bytes(), 1365U * 3 * sizeof(float));
+  EXPECT_EQ(TexturePyramids(nullptr).bytes(), 0U);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "raykiln/base/sha256.hpp"
@@ -172,6 +173,35 @@ TEST_F(StoreTest, KeepsJobsInOrderWithTheirKeys) {
   query = {};
   query.scene = "other";
   EXPECT_TRUE(store->jobs(query)->empty());
+}
+
+TEST_F(StoreTest, LayersReadBackAndDamageIsNoticed) {
+  ASSERT_TRUE(store->put_job(job("a", JobState::kCompleted)));
+  StoredImage image{2, 1, {1, 2, 3, 4, 5, 6}, {0, 1, 2, 3, 4, 5}, {7, 8}, {0.5F, 0.25F}};
+  image.layers = {{"albedo", {1, 2, 3, 4, 5, 6}}, {"depth", {3, HUGE_VALF}}};
+  ASSERT_TRUE(store->put_image("a", image));
+  open();
+  const auto kept = store->image("a");
+  ASSERT_TRUE(kept);
+  ASSERT_EQ(kept->layers.size(), 2U);
+  EXPECT_EQ(kept->layers[0].name, "albedo");
+  EXPECT_EQ(kept->layers[0].values, image.layers[0].values);
+  EXPECT_EQ(kept->layers[1].name, "depth");
+  EXPECT_EQ(kept->layers[1].values, image.layers[1].values);
+  EXPECT_EQ(kept->seconds, image.seconds);
+  const fs::path file = directory.path() / "images" / "a";
+  EXPECT_EQ(store->bytes_used(), fs::file_size(file));
+  const auto whole = fs::file_size(file);
+  for (const std::uintmax_t cut : {std::uintmax_t{4}, std::uintmax_t{68}, std::uintmax_t{80}}) {
+    fs::resize_file(file, whole - cut);
+    EXPECT_EQ(store->image("a").error().code, "internal") << cut;
+  }
+  StoredImage wrong = image;
+  wrong.layers[1].values.push_back(1.0F);
+  EXPECT_FALSE(store->put_image("a", wrong)) << "3 values for 2 pixels";
+  wrong = image;
+  wrong.layers[0].name = std::string(65, 'x');
+  EXPECT_FALSE(store->put_image("a", wrong));
 }
 
 TEST_F(StoreTest, ImagesReadBackAndDamageIsNoticed) {

@@ -35,6 +35,7 @@ TEST(KnobVariants, WhatCannotChangeAPictureIsNotListed) {
   b.look({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.5);
   const auto listed = names(b.scene());
   EXPECT_FALSE(has(listed, "fresnel=schlick") || has(listed, "emitters=bsdf") || has(listed, "phong=over_cos_o"));
+  EXPECT_FALSE(has(listed, "textures=footprint"));
   EXPECT_TRUE(has(listed, "diffuse=uniform") && has(listed, "light_model=seed"));
 }
 

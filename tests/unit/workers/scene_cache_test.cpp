@@ -104,6 +104,25 @@ TEST_F(SceneCacheTest, ASceneOverTheBoundIsKeptAloneAndCounted) {
   }
 }
 
+/// Also those that are made when a render first asks for them.
+TEST_F(SceneCacheTest, TablesOfEmittersAreCounted) {
+  intake.make = [](const BlobFile& file) {
+    render::Scene scene = tiny_scene(0.5F, 1.0F + static_cast<float>(file.bytes));
+    scene.materials[0].emission = render::Rgb(1.0F);  // of two more triangles
+    return scene;
+  };
+  hold(1);
+  EXPECT_GT(cache->bytes(), 2 * one);
+  intake.make = [](const BlobFile& file) {
+    render::Scene scene = tiny_scene(0.5F, 1.0F + static_cast<float>(file.bytes));
+    scene.materials[1].emission = render::Rgb(0.0F);
+    return scene;
+  };
+  const std::uint64_t two = cache->bytes();
+  hold(2);
+  EXPECT_LT(cache->bytes() - two, one);
+}
+
 TEST_F(SceneCacheTest, ForgetGivesBytesBack) {
   hold(1);
   cache->forget(ids[0]);

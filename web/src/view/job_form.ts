@@ -7,6 +7,7 @@ import type { State } from "../state";
 import type { Commands } from "./commands";
 import { Facts, h, set_attribute, set_hidden, set_text } from "./dom";
 import { EffectList, EffectPicker } from "./effects";
+import { LayerPicker } from "./layers";
 import { WarningList } from "./warnings";
 
 type Control = HTMLInputElement | HTMLSelectElement;
@@ -61,6 +62,7 @@ export class JobForm {
   private report_ = new Facts();
   private effects_ = new EffectList();
   private picker_: EffectPicker;
+  private layers_: LayerPicker;
   private warnings_ = new WarningList();
   private problem_ = h("p", { class: "problem", role: "alert", hidden: true });
   private submit_ = h("button", { type: "submit", class: "primary" }, "Render");
@@ -69,9 +71,10 @@ export class JobForm {
   constructor(commands: Commands) {
     const main = h("div", { class: "fields" });
     this.picker_ = new EffectPicker((value) => commands.set_field("without", value));
+    this.layers_ = new LayerPicker((value) => commands.set_field("layers", value));
     for (const spec of kFields) {
-      if (spec.kind === "effects") {
-        this.more_.append(this.picker_.element);
+      if (spec.kind === "effects" || spec.kind === "layers") {
+        this.more_.append((spec.kind === "effects" ? this.picker_ : this.layers_).element);
         continue;
       }
       const field = new Field(spec, commands);
@@ -111,6 +114,7 @@ export class JobForm {
     }
     set_hidden(this.own_camera_, state.form.camera !== kOwnCamera);
     this.picker_.update(state.form.without, state.form_errors.without ?? "", Object.values(state.scenes), scene);
+    this.layers_.update(state.form.layers, state.form_errors.layers ?? "");
     set_hidden(this.picker_.element, state.form.effects !== kWithout);
     this.effects_.update(scene?.effects);
     this.report_.update(scene ? report(scene) : [], ["Lights"]);

@@ -1,7 +1,7 @@
 // One job: its picture, its figures, and what can be done with it.
 
 import { image_url } from "../api";
-import { is_final, job_title, kLayers, type Job, type Layer } from "../contract";
+import { is_final, job_title, layers_of, type Job, type Layer } from "../contract";
 import { count, duration, error_percent, label_of, percent, ray_rate, si, statistic, stops } from "../format";
 import { effects_text } from "../form";
 import { remedy_of } from "../problem";
@@ -11,13 +11,10 @@ import { CurveView } from "./curve";
 import { Facts, h, set_attribute, set_hidden, set_text } from "./dom";
 import { EffectList } from "./effects";
 import { report } from "./job_form";
+import { kLayerNames, legend } from "./layers";
 import { Picture } from "./picture";
 import { PriceView } from "./price";
 import { WarningList } from "./warnings";
-
-const kLayerNames: Record<Layer, string> = {
-  beauty: "Picture", error: "Standard error", samples: "Samples", seconds: "Seconds",
-};
 
 export const kExposureRange = { min: -8, max: 8, step: 0.1 };
 
@@ -44,10 +41,11 @@ export class JobPage {
   private reset_ = h("button", { type: "button", class: "quiet" }, "Reset");
   private fit_ = h("button", { type: "button", "aria-pressed": "true" }, "Fit");
   private actual_ = h("button", { type: "button", "aria-pressed": "false" }, "100 %");
-  private layer_ = h("select", { id: "layer" },
-    ...kLayers.map((layer) => h("option", { value: layer }, kLayerNames[layer])));
+  private layer_ = h("select", { id: "layer" });
+  private layers_ = "";
+  private legend_bar_ = h("span", { class: "legend-bar" });
   private legend_text_ = h("span", { class: "hint" });
-  private legend_ = h("div", { class: "legend", hidden: true }, h("span", { class: "legend-bar" }), this.legend_text_);
+  private legend_ = h("div", { class: "legend", hidden: true }, this.legend_bar_, this.legend_text_);
   private curve_ = new CurveView();
   private price_: PriceView;
   private scale_ = h("span", { class: "hint scale" });
@@ -122,10 +120,13 @@ export class JobPage {
     this.exposure_.value = String(state.exposure);
     set_text(this.exposure_value_, stops(state.exposure));
     this.reset_.disabled = state.exposure === 0;
+    this.offer(job ? layers_of(job.request) : ["beauty"]);
     if (this.layer_.value !== state.layer) this.layer_.value = state.layer;
     const range = state.layer === "beauty" ? null : state.range;
-    set_hidden(this.legend_, range === null);
-    if (range) set_text(this.legend_text_, `${range_number(range.low)} to ${range_number(range.high)}${kUnits[state.layer]}${range.scale === "log" ? ", logarithmic" : ""}`);
+    const said = legend(state.layer, range);
+    set_hidden(this.legend_, said === "");
+    set_hidden(this.legend_bar_, range === null);
+    set_text(this.legend_text_, said);
     this.curve_.update(state.accuracy);
     set_attribute(this.fit_, "aria-pressed", String(state.zoom === "fit"));
     set_attribute(this.actual_, "aria-pressed", String(state.zoom === "actual"));
@@ -135,6 +136,12 @@ export class JobPage {
     if (job) this.price_.update(job, state.accuracy);
     if (job) this.show(state, job);
     else this.wait(id);
+  }
+
+  private offer(layers: readonly Layer[]): void {
+    if (layers.join() === this.layers_) return;
+    this.layers_ = layers.join();
+    this.layer_.replaceChildren(...layers.map((layer) => h("option", { value: layer }, kLayerNames[layer])));
   }
 
   private wait(id: string): void {
@@ -202,9 +209,6 @@ export class JobPage {
     set_attribute(this.exr_, "download", `${name}.exr`);
   }
 }
-
-const kUnits: Record<Layer, string> = { beauty: "", error: " radiance", samples: " samples", seconds: " s" };
-const range_number = (value: number): string => String(Number(value.toPrecision(2)));
 
 const percent_scale = (scale: number): string => `${Math.round(scale * 100)} %`;
 
@@ -311,7 +315,7 @@ function replay_rows(job: Job): [string, string][] {
 }
 
 function setting_rows(job: Job): [string, string][] {
-  const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, effects, ...rest } = job.request;
+  const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, effects, layers, lens, crop, ...rest } = job.request;
   const rows: [string, string][] = [];
   if (stop.samples !== undefined) rows.push(["Samples at most", count(stop.samples)]);
   if (stop.error !== undefined) rows.push(["Error target", error_percent(stop.error)]);
@@ -319,6 +323,9 @@ function setting_rows(job: Job): [string, string][] {
   rows.push(["Camera", typeof camera === "object" ? "own" : String(camera ?? 0)]);
   for (const [key, value] of Object.entries(overrides ?? {})) rows.push([label_of(key), statistic(key, value)]);
   for (const [key, value] of Object.entries(rest)) rows.push([label_of(key), statistic(key === "seed" ? "" : key, value)]);
+  if (lens) rows.push(["Lens", `radius ${lens.radius} m, focus at ${lens.focus_distance ?? 1} m`]);
+  if (crop) rows.push(["Window", `at ${crop.x}, ${crop.y} of ${crop.full_width} × ${crop.full_height}`]);
+  if (layers && layers.length > 0) rows.push(["Layers", layers.map(label_of).join(", ")]);
   if (effects !== undefined) rows.push(["Effects", effects_text(effects)]);
   rows.push(["Job", job.id]);
   if (job.continues) rows.push(["Continues", `${job.continues.job}, ${count(job.continues.samples)} samples taken over`]);

@@ -10,10 +10,13 @@ namespace raykiln::render {
 
 struct BuildLimits {
   /// Most bytes that the build may hold beside the given mesh. Lowers max_duplication as far as the
-  /// worst case asks for, usually several times further than was necessary, but never below one
-  /// reference a triangle: less memory than that cannot hold a tree.
+  /// worst case asks for, usually several times further than was necessary. Less than least_bytes()
+  /// is refused with std::length_error.
   std::uint64_t max_bytes = 0;  ///< 0: no limit
 };
+
+/// What a build with one reference a triangle may need, tree and copy of the mesh included.
+[[nodiscard]] std::uint64_t least_bytes(const TriangleView& mesh, const BuildParams& params);
 
 /// As without limits, which depend on nothing but the mesh: the same tree for any TaskRunner.
 [[nodiscard]] std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh,

@@ -35,7 +35,8 @@ struct ImageError {
   Figure display_rmse;  ///< the same of display values in [0, 1] at the exposure that was given
 
   /// More than two fifths of rel_mse come from places where few samples make up the variance: it may
-  /// be far larger than they show. Intervals are three times as wide then (in the logarithm).
+  /// be far larger than they show. Intervals grow with that part, from a fifth on, to three times as wide (in the
+  /// logarithm) where it is four fifths.
   bool heavy_tailed = false;
   /// No two samples of any pixel differ. True of a picture without noise, and of one in which no
   /// sample has found the light: samples alone cannot tell.

@@ -1,6 +1,7 @@
 // The error of single pixels: the layer behind the picture.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "raykiln/image/film.hpp"
@@ -18,5 +19,8 @@ struct PixelErrors {
 /// in the differences between them: a pixel that no sample has brightened is not certain for that, and
 /// at an edge a pixel keeps most of its own.
 [[nodiscard]] PixelErrors pixel_errors(const Film& film);
+
+/// The same of whole rows that were copied from a film. With the row above and the row below, those between are as in the film.
+[[nodiscard]] PixelErrors pixel_errors(std::span<const PixelSums> pixels, int width, SampleRelation relation);
 
 }  // namespace raykiln::render

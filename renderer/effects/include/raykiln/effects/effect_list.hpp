@@ -19,6 +19,7 @@
   ROW(Mirrors, mirrors)                          \
   ROW(MicrofacetLobes, microfacet_lobes)         \
   ROW(AlphaCoverage, alpha_coverage)             \
+  ROW(OneSidedSurfaces, one_sided_surfaces)      \
   ROW(Refraction, refraction)                    \
   ROW(Fresnel, fresnel)                          \
   ROW(ShadingNormals, shading_normals)           \

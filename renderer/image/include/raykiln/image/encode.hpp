@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -33,6 +34,7 @@ enum class PngEffort {
 struct ExtraPlane {
   std::string name;              ///< channel name; with three channels name.R, name.G, name.B
   std::span<const float> values; ///< 1 or 3 a pixel
+  std::span<const std::string_view> channels{};  ///< names of the channels, if others
 };
 
 /// Linear float32 EXR with the given string attributes.

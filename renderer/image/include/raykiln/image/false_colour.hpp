@@ -26,4 +26,10 @@ struct ValueRange {
 [[nodiscard]] Image false_colour(std::span<const float> values, int width, int height,
                                  const ValueRange& range);
 
+/// Directions, 3 values a pixel: -1 to 1 become the display values 0 to 1; (0, 0, 0), no direction, is black.
+[[nodiscard]] Image direction_colours(std::span<const float> directions, int width, int height);
+
+/// A bright colour for each number, neighbours far apart in hue; 0 is black.
+[[nodiscard]] Image id_colours(std::span<const float> ids, int width, int height);
+
 }  // namespace raykiln::render

@@ -17,13 +17,20 @@ enum class PictureFormat : std::uint8_t { kPng, kJpeg, kExr, kHdr };
 [[nodiscard]] std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes);
 [[nodiscard]] std::string_view name(PictureFormat format);
 
-/// Three values a pixel, row 0 at the top; alpha is left out and has not been multiplied in. One of
-/// the two is filled.
+/// What of a picture is read.
+enum class PictureChannels : std::uint8_t {
+  kColour,       ///< three values; alpha is left out and has not been multiplied in
+  kAlpha,        ///< one: alpha; of a picture without, nothing
+  kAlphaOrGrey,  ///< one: alpha; of a picture without, the mean of its colours as they are stored
+};
+
+/// Row 0 at the top. One of the two is filled; none where alpha was asked for and is not there.
 struct PictureFile {
   PictureFormat format = PictureFormat::kPng;
   int width = 0, height = 0;
   std::vector<std::uint8_t> srgb8;  ///< PNG and JPEG of 8 bits: sRGB display values
   std::vector<float> linear;  ///< EXR and HDR as they are; PNG of 16 bits with sRGB's curve undone
+  int channels = 3;           ///< values a pixel: 3, or 1 without sRGB's curve
 };
 struct PictureFileError {
   std::string message;
@@ -37,6 +44,7 @@ struct PictureFileLimits {
 /// A PNG, JPEG, EXR or Radiance HDR picture within the limits. The header is checked before anything
 /// of the picture's size is allocated. Linear values may be anything a file can hold.
 [[nodiscard]] std::variant<PictureFile, PictureFileError> read_picture_file(
-    std::span<const std::uint8_t> bytes, const PictureFileLimits& limits);
+    std::span<const std::uint8_t> bytes, const PictureFileLimits& limits,
+    PictureChannels channels = PictureChannels::kColour);
 
 }  // namespace raykiln::render

@@ -23,6 +23,12 @@ enum class PixelFilter : std::uint8_t {
 /// [-1, 2] else.
 [[nodiscard]] double filtered_offset(PixelFilter filter, double u);
 
+/// What a path's pixel covers across its ray, metres: so much at the ray's start, and more with each metre.
+struct PathCone {
+  double width = 0.0;
+  double spread = 0.0;
+};
+
 /// A camera with the picture's shape worked in, for geometry that lies within `geometry`. Pixels are
 /// square; the field of view is vertical.
 class CameraRays {
@@ -32,6 +38,12 @@ class CameraRays {
   /// Unit direction through picture coordinates in pixels, (0, 0) at the top left corner, of the ray
   /// through the middle of the lens.
   [[nodiscard]] Vec3f direction(double x, double y) const;
+
+  /// Metres from the eye to `place` along the camera's forward.
+  [[nodiscard]] double depth(const Vec3d& place) const { return dot(place - camera_.eye, camera_.forward); }
+
+  /// Of a ray of this camera: as wide as a pixel, through the middle of the lens.
+  [[nodiscard]] PathCone cone(const Ray& ray) const;
 
   /// Uses dimensions kPixelX and kPixelY of the path's first vertex in random mode, kLensX and kLensY
   /// where there is a lens.

@@ -9,19 +9,22 @@
 
 #include "raykiln/accel/kdtree.hpp"
 #include "raykiln/effects/effect.hpp"
+#include "raykiln/image/layers.hpp"
 #include "raykiln/integrator/camera_ray.hpp"
 #include "raykiln/integrator/render_stats.hpp"
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/shading/bsdf.hpp"
 #include "raykiln/shading/emitters.hpp"
+#include "raykiln/shading/texture_pyramid.hpp"
 
 namespace raykiln::render {
 
-/// What light is carried through. All three outlive the tracer.
+/// What light is carried through. All of it outlives the tracer.
 struct TransportScene {
   const Scene& scene;
   const KdTree& tree;
   const Emitters& emitters;
+  const TexturePyramids* pyramids = nullptr;  ///< of its textures; null: they are read exactly, whatever is asked for
 };
 
 struct PathSettings {
@@ -34,6 +37,7 @@ struct PathSettings {
   int window_x = 0, window_y = 0;  ///< where pixel (0, 0) lies in the camera's picture
   bool emitter_sampling = true;
   EmitterChoice emitter_choice = EmitterChoice::kAuto;
+  TextureReading texture_reading = TextureReading::kExact;
   BsdfModel bsdf;
   Traversal traversal = Traversal::kTree;
   /// What is to be simulated. Precondition: what is missing here is not called for, or in left_out.
@@ -68,10 +72,11 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  /// Fills results[i] for starts[i]. Returns false, with results unusable, once stop is requested;
-  /// it is polled before every call into the tree.
+  /// Fills results[i] for starts[i], and layers[i] unless there are none. Returns false, with results
+  /// unusable, once stop is requested; it is polled before every call into the tree.
   [[nodiscard]] bool trace(std::span<const PathStart> starts, std::span<PathResult> results,
-                           RenderStats& stats, const std::stop_token& stop);
+                           RenderStats& stats, const std::stop_token& stop,
+                           std::span<LayerSample> layers = {});
 
   /// The instance of the shading loop that runs: "general", "reduced", "opaque", "matte",
   /// "flat_matte" or "direct_flat_matte".
@@ -83,6 +88,8 @@ class PathTracer {
   void admit(Call& call);  ///< shoots camera rays while there is room under way
   void advance(Call& call, std::size_t begin, std::size_t end);  ///< one reflection of these paths
   void shade(Call& call, std::size_t begin, std::size_t end);
+  void look(Call& call, std::size_t begin, std::size_t end);  ///< what these camera rays met
+  void dark(Call& call);  ///< where there is no light: one look along each camera ray, if any is asked for
   CameraRays camera_;
   std::unique_ptr<Scratch> scratch_;
 };

@@ -13,6 +13,7 @@ struct RenderStats {
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t paths = 0, non_finite = 0, negative = 0, truncated = 0;
   std::uint64_t roulette_ends = 0;   ///< paths that roulette ended
+  std::uint64_t gap_rays = 0;        ///< rays that went on through a gap in a surface, each time
   std::uint64_t lights_at_hits = 0;  ///< point lights at distance 0 from what they should light: add 0
   std::uint64_t closest_calls = 0;            ///< calls of closest_hits
   std::uint64_t short_calls_while_many_live = 0;  ///< fewer than 1024 rays although as many paths lived

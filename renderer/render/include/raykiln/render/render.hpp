@@ -13,6 +13,7 @@
 #include "raykiln/accel/kdtree.hpp"
 #include "raykiln/effects/effect_plan.hpp"
 #include "raykiln/image/film.hpp"
+#include "raykiln/image/layers.hpp"
 #include "raykiln/integrator/camera_ray.hpp"    // PixelMode
 #include "raykiln/integrator/render_stats.hpp"  // RenderStats
 #include "raykiln/sampling/random.hpp"          // Sampler
@@ -20,6 +21,7 @@
 #include "raykiln/shading/bsdf.hpp"  // DirectionSampling
 #include "raykiln/shading/emitter_choice.hpp"
 #include "raykiln/shading/light_model.hpp"
+#include "raykiln/shading/texture_pyramid.hpp"
 
 namespace raykiln::render {
 
@@ -44,8 +46,10 @@ struct RenderSettings {
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;  ///< with multiple importance sampling
   EmitterChoice emitter_choice = EmitterChoice::kAuto;
+  TextureReading texture_reading = TextureReading::kExact;  ///< kFootprint is biased, and told by a notice
   Traversal traversal = Traversal::kTree;
   EffectChoice effects{};        ///< kAuto and kAll give the same bytes
+  LayerSet layers{};             ///< made beside the picture, whose bytes they leave alone
 };
 
 /// Limits that settings_error() checks.
@@ -88,7 +92,8 @@ struct LightModelWarning {
 /// Which effects these settings simulate in this scene, and why. The first walks all triangles.
 [[nodiscard]] EffectPlan effect_plan(const RenderSettings& settings, const Scene& scene);
 
-/// What is worth knowing beside a picture: "tree_no_benefit" where no split of the tree pays, and
+/// What is worth knowing beside a picture: "tree_no_benefit" where no split of the tree pays,
+/// "textures_by_footprint" where their values are means, and
 /// "unresolved_sharp_highlight" where mirrors show point lights, spots or suns smaller than samples can find.
 /// Precondition: settings_error() is nothing.
 struct RenderNotice {
@@ -113,6 +118,7 @@ class PreparedScene;
 struct TileResult {
   PixelRect rect;
   std::vector<BlockResult> blocks;
+  std::vector<LayerBlock> layers{};    ///< one a block; empty where no layer is asked for
   RenderStats stats;
   std::vector<BadSample> bad_samples;  ///< at most 16 located ones
   bool stopped = false;                ///< stop was requested: the blocks must not be folded
@@ -126,5 +132,7 @@ struct TileResult {
 
 /// Folds all blocks of the result, in their order; nothing of one that was stopped.
 void merge(Film& film, const TileResult& result);
+/// The same for its layers, which are those of `film`.
+void merge(LayerFilm& film, const TileResult& result);
 
 }  // namespace raykiln::render

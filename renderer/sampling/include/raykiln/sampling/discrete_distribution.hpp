@@ -21,6 +21,8 @@ class DiscreteDistribution {
   /// The index for u in [0, 1). Precondition: not empty().
   [[nodiscard]] std::size_t sample(double u) const;
 
+  [[nodiscard]] std::span<const double> cumulative() const { return cumulative_; }
+
   [[nodiscard]] std::size_t bytes() const { return cumulative_.capacity() * sizeof(double); }
 
   [[nodiscard]] double probability(std::size_t index) const;

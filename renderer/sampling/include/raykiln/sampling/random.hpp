@@ -26,7 +26,7 @@ enum class Dimension : std::uint32_t {
   kRoulette = 12,
   kEnvironmentU = 13,
   kEnvironmentV = 14,
-  kSpare = 15,
+  kCoverage = 15,  ///< of a ray: behind how many of the surfaces that it meets it ends
   kCount = 16
 };
 

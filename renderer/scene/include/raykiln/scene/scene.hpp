@@ -15,6 +15,12 @@ namespace raykiln::render {
 
 inline constexpr std::uint32_t kNoNormal = 0xFFFFFFFFU;
 
+/// Triangles from `first` on, up to the next run, are of this object.
+struct ObjectRun {
+  std::uint32_t first = 0;
+  std::uint32_t object = 0;
+};
+
 /// All triangles of the scene, in world space relative to Scene::origin, in metres.
 /// Counter-clockwise winding faces outwards. The triangle id is its index here.
 struct TriangleMesh {
@@ -23,7 +29,11 @@ struct TriangleMesh {
   std::vector<std::uint32_t> material_ids;                   ///< one a triangle
   std::vector<Vec3f> normals;                                ///< unit; empty when nothing has any
   std::vector<std::array<std::uint32_t, 3>> corner_normals;  ///< empty, or one a triangle; kNoNormal
+  std::vector<ObjectRun> objects{};  ///< by rising first; triangles before the first run are of object 0
 };
+
+/// Number of the object that triangle `id` is of.
+[[nodiscard]] std::uint32_t object_of(const TriangleMesh& mesh, std::uint32_t id);
 
 /// Which formulas a material follows.
 enum class SurfaceModel : std::uint8_t {
@@ -35,10 +45,10 @@ enum class SurfaceModel : std::uint8_t {
 struct Microfacets {
   double roughness = 1.0;  ///< [0, 1]; alpha is its square
   float edge = 1.0F;       ///< reflectance of the opaque share at grazing; `specular` is that at normal
+  Rgb diffuse_through{0.0F};  ///< albedo of the diffuse base towards the far side; `diffuse` is that of the near one
   Rgb tint{1.0F};          ///< of what the transparent share lets through, [0, 1]
   bool thin = true;        ///< a sheet, which does not bend light; else the border of a body
   Rgb absorption{0.0F};    ///< m^-1, inside of the body
-  float coverage = 1.0F;   ///< share of the light that meets the surface; the rest passes straight on
 };
 
 /// The seed's BSDF, section 3: f = diffuse [transparent a/(2 pi) + (1 - transparent) a/pi]
@@ -52,17 +62,28 @@ struct Material {
   float transparent = 0.0F;  ///< [0, 1]: share that also transmits
   double specular_exp = 1.0; ///< Phong exponent e >= 0
   float index_of_refraction = 1.0F;  ///< of the side behind the geometric normal; vacuum in front
-  Rgb emission{0.0F};                ///< radiance, W sr^-1 m^-2, both sides
+  Rgb emission{0.0F};                ///< radiance, W sr^-1 m^-2, both sides unless one_sided
   SurfaceModel model = SurfaceModel::kPhong;
   Microfacets facets{};              ///< of kMicrofacet only
+  /// [0, 1]: share of the light that meets the surface at all; the rest passes straight on. A texture
+  /// may change it from point to point, see coverage_at().
+  float coverage = 1.0F;
+  /// Seen from behind it is not there: rays that come from there pass, and it shines to the front alone.
+  bool one_sided = false;
 };
 
-/// Does it reflect or let through anything at all?
+/// Does it reflect or let through anything of what meets it?
 [[nodiscard]] inline bool scatters(const Material& m) {
   const Rgb black(0.0F);
   if (m.diffuse != black || m.specular != black) return true;
   return m.model == SurfaceModel::kMicrofacet &&
-         (m.transparent > 0.0F || m.facets.edge > 0.0F || m.facets.coverage < 1.0F);
+         (m.transparent > 0.0F || m.facets.edge > 0.0F || m.facets.diffuse_through != black);
+}
+
+/// May light that arrives from behind be seen?
+[[nodiscard]] inline bool transmits(const Material& m) {
+  return m.transparent > 0.0F ||
+         (m.model == SurfaceModel::kMicrofacet && m.facets.diffuse_through != Rgb(0.0F));
 }
 
 enum class Projection : std::uint8_t { kPerspective, kOrthographic };
@@ -95,6 +116,7 @@ struct SurfaceTextures;  // surface_textures.hpp
 struct Scene {
   TriangleMesh mesh;
   std::vector<Material> materials;
+  std::vector<std::string> object_names{};  ///< by number; empty in scenes that are put together by hand
   std::vector<PointLight> point_lights;
   std::vector<SpotLight> spot_lights;
   std::vector<DirectionalLight> directional_lights;

@@ -1,8 +1,10 @@
 // Pictures on surfaces: colour and emission that change from point to point.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,12 +19,13 @@ inline constexpr std::uint32_t kNoUv = 0xFFFFFFFFU;
 enum class TextureWrap : std::uint8_t { kRepeat, kMirror, kClamp };
 enum class TextureFilter : std::uint8_t { kBilinear, kNearest };
 
-/// Three values a texel, row 0 at the top. One of the two is filled.
+/// Three values a texel, or one, row 0 at the top. One of the two is filled.
 struct TextureImage {
   std::string name;  ///< of the file, or where it is embedded
   int width = 0, height = 0;
   std::vector<std::uint8_t> srgb8;  ///< sRGB display values
   std::vector<float> linear;        ///< linear values, finite, >= 0
+  int channels = 3;                 ///< or 1, of coverage: all three values are that one
 };
 
 /// A picture as a material uses it. Its coordinates are u' = u_row . (u, v, 1) and v' likewise;
@@ -44,16 +47,23 @@ struct MaterialTextures {
   Rgb specular_tint{0.0F}; ///< that share, [0, 1] for each channel
   TextureUse emission;     ///< multiplies emission
   TextureUse roughness;    ///< of facets: green multiplies roughness, blue metallic
-  MetallicRoughness metal; ///< what those are multiplied with
+  MetallicRoughness metal; ///< what those and `through` are multiplied with
   TextureUse normal;       ///< half of 1 + the normal in the frame of the picture, y upwards in it
   double normal_scale = 1.0;  ///< of its x and y
+  TextureUse through;         ///< of facets: multiplies the share of diffuse transmission
+  TextureUse through_colour;  ///< of facets: multiplies its colour
+  TextureUse alpha;           ///< multiplies coverage
+  std::optional<double> alpha_cutoff{};  ///< the product counts as 0 below it and as 1 from it on
 
-  [[nodiscard]] std::array<TextureUse*, 4> uses() { return {&base, &emission, &roughness, &normal}; }
-  [[nodiscard]] std::array<const TextureUse*, 4> uses() const {
-    return {&base, &emission, &roughness, &normal};
+  [[nodiscard]] std::array<TextureUse*, 7> uses() {
+    return {&base, &emission, &roughness, &normal, &through, &through_colour, &alpha};
+  }
+  [[nodiscard]] std::array<const TextureUse*, 7> uses() const {
+    return {&base, &emission, &roughness, &normal, &through, &through_colour, &alpha};
   }
   [[nodiscard]] bool used() const {
-    return base.used() || emission.used() || roughness.used() || normal.used();
+    const auto all = uses();
+    return std::any_of(all.begin(), all.end(), [](const TextureUse* use) { return use->used(); });
   }
 };
 

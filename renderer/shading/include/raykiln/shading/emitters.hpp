@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,7 +12,7 @@
 #include "raykiln/sampling/random.hpp"
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/shading/emitter_choice.hpp"
-#include "raykiln/shading/light_tree.hpp"
+#include "raykiln/shading/emitter_tree.hpp"
 #include "raykiln/shading/surface_point.hpp"
 
 namespace raykiln::render {
@@ -29,19 +31,24 @@ struct EmitterSample {
 /// Emitting triangles, drawn with probability proportional to area times the largest channel of
 /// their radiance, times the mean of its texture (not luminance: permuting channels must not change a draw), or, from a tree,
 /// by what they may bring to a receiver; then uniformly by area; the lights without a surface that shine at all; the environment map, if there is one.
-/// Triangles of zero area or radiance are left out.
+/// Triangles of zero area or radiance are left out. Nothing changes after construction but that the tree is
+/// built, once, by whichever thread first asks for it: scenes whose emitters are chosen by power have none.
 class Emitters {
  public:
   explicit Emitters(const Scene& scene);
 
   [[nodiscard]] bool has_triangles() const { return !distribution_.empty(); }
-  /// Of the tables, but for the environment's; 0 where nothing shines.
+  /// Of the tables, but for the environment's; with the tree, be it built yet or not. 0 where nothing shines.
   [[nodiscard]] std::size_t bytes() const {
     return triangles_.capacity() * sizeof(std::uint32_t) + distribution_.bytes() +
-           pdf_area_.capacity() * sizeof(double) + tree_.bytes() + point_lights_.capacity() * sizeof(PointLight) +
+           weights_.capacity() * sizeof(double) + tree_bytes_ + point_lights_.capacity() * sizeof(PointLight) +
            spot_lights_.capacity() * sizeof(SpotLight) +
            directional_lights_.capacity() * sizeof(DirectionalLight);
   }
+
+  /// The emitting triangles, ascending, and what sample() draws one of them by.
+  [[nodiscard]] std::span<const std::uint32_t> triangles() const { return triangles_; }
+  [[nodiscard]] std::span<const double> cumulative() const { return distribution_.cumulative(); }
 
   [[nodiscard]] std::span<const PointLight> point_lights() const { return point_lights_; }
   [[nodiscard]] std::span<const SpotLight> spot_lights() const { return spot_lights_; }
@@ -56,7 +63,9 @@ class Emitters {
 
   /// Density per area with which sample() finds a point of a triangle of this material, m^-2.
   /// Precondition: has_triangles().
-  [[nodiscard]] double pdf_area(std::uint32_t material) const { return pdf_area_[material]; }
+  [[nodiscard]] double pdf_area(std::uint32_t material) const {
+    return weights_[material] / distribution_.total();
+  }
 
   /// Is the tree to be used where this is asked for?
   [[nodiscard]] bool by_tree(EmitterChoice choice) const {
@@ -70,16 +79,27 @@ class Emitters {
 
   /// Density per area with which that finds a point of this triangle, m^-2; 0 for one that is never drawn.
   [[nodiscard]] double pdf_area(const Scene& scene, std::uint32_t triangle,
-                                const EmitterReceiver& receiver) const;
+                                const EmitterReceiver& receiver) const {
+    return tree(scene).pdf_area(receiver, triangle);
+  }
+
+  /// The tree itself. Precondition: has_triangles().
+  [[nodiscard]] const EmitterTree& tree(const Scene& scene) const;
 
  private:
+  struct TreeOnDemand {
+    std::once_flag built;
+    std::optional<EmitterTree> tree;
+  };
+
   [[nodiscard]] EmitterSample point_on(const Scene& scene, std::uint32_t triangle,
                                        const VertexKey& vertex) const;
 
   std::vector<std::uint32_t> triangles_;  ///< ascending
-  LightTree tree_;                        ///< over triangles_
+  std::unique_ptr<TreeOnDemand> tree_;    ///< over triangles_; null without
+  std::size_t tree_bytes_ = 0;
   DiscreteDistribution distribution_;
-  std::vector<double> pdf_area_;  ///< one a material; empty without triangles
+  std::vector<double> weights_;  ///< of the emission, one a material; empty without triangles
   std::vector<PointLight> point_lights_;
   std::vector<SpotLight> spot_lights_;
   std::vector<DirectionalLight> directional_lights_;

@@ -50,7 +50,7 @@ struct LostDirections {
 /// Share of light from one direction that a rough border between two media reflects or lets through
 /// after one meeting: of GGX facets with Fresnel's equations. `eta` is the index beyond over the one on
 /// this side. Read from a
-/// table, which is computed when it is first needed.
+/// table, of which each row is computed when it is first needed; at most 1 % off, 0.1 % on average, for indices up to 3.
 [[nodiscard]] double border_albedo(double cosine, double alpha, double eta);
 
 }  // namespace raykiln::render

@@ -37,7 +37,7 @@ struct LightModel {
   friend bool operator==(const LightModel&, const LightModel&) = default;
 };
 
-/// Reflections that roulette leaves alone: the first ones bring most of the light.
+/// Paths that a limit ends after so many reflections at most are left alone by roulette.
 inline constexpr int kBouncesBeforeRoulette = 3;
 
 inline constexpr LightModel kPhysicalModel{};

@@ -8,18 +8,19 @@ namespace raykiln::render {
 
 /// Probabilities of what sampling picks; they sum to 1.
 struct FacetChoice {
-  double passes = 0.0;    ///< straight through what is not covered
   double diffuse = 0.0;
   double repeated = 0.0;  ///< light that leaves after several reflections among facets
   double opaque = 0.0;    ///< one reflection at a facet
   double border = 0.0;    ///< one meeting with a facet of a clear border
+  double diffuse_through = 0.0;  ///< diffusely to the far side
 };
 
 /// Everything that depends on the point and wo. With n turned to the side of wo, t = transparent,
-/// c = coverage, E the albedo of facets that reflect everything and A that of the opaque share's:
-///   f = c (1 - t) [ F D G/(4 cos_i cos_o) + m(F) (1 - E_i)(1 - E_o)/(pi (1 - E_mean))
-///                   + diffuse/pi (1 - A_i)(1 - A_o)/(1 - A_mean) ] + c t f_border
-/// and the share 1 - c goes straight on. F is Schlick's from `specular` to `edge`. The second term is light
+/// E the albedo of facets that reflect everything and A that of the opaque share's:
+///   f = (1 - t) [ F D G/(4 cos_i cos_o) + m(F) (1 - E_i)(1 - E_o)/(pi (1 - E_mean))
+///                 + diffuse/pi (1 - A_i)(1 - A_o)/(1 - A_mean) ] + t f_border
+/// on the side of wo; beyond it (1 - t) diffuse_through/pi (1 - A_i)(1 - A_o)/(1 - A_mean) + t f_border.
+/// F is Schlick's from `specular` to `edge`. The second term is light
 /// that met several facets (Kulla & Conty 2017); the third conserves energy below the first two
 /// (Kelemen & Szirmay-Kalos 2001). All of that is reciprocal. f_border: see evaluate_border.
 struct MicrofacetBsdf {
@@ -32,9 +33,10 @@ struct MicrofacetBsdf {
   Rgbd specular{0.0};  ///< at normal incidence
   double edge = 0.0;   ///< at grazing incidence
   Rgbd diffuse{0.0};   ///< albedo / pi times (1 - A_o)/(1 - A_mean)
+  Rgbd diffuse_through{0.0};  ///< the same towards the far side
   Rgbd repeated{0.0};  ///< m(F) of the opaque share
   double lost_o = 0.0, lost_mean = 1.0;  ///< 1 - E
-  double opaque_share = 1.0, border_share = 0.0;  ///< c (1 - t) and c t
+  double opaque_share = 1.0, border_share = 0.0;  ///< 1 - t and t
   bool thin = true;
   double eta_o = 1.0, eta_t = 1.0;  ///< of a body: on the side of wo, and beyond
   double radiance_scale = 1.0;      ///< of light refracted towards wo
@@ -51,14 +53,13 @@ struct MicrofacetBsdf {
                                                   const Vec3f& ns, const Vec3f& wo,
                                                   const BsdfModel& model);
 
-/// f times |cos theta_i| and the density, without what passes straight through.
 [[nodiscard]] BsdfValue evaluate(const MicrofacetBsdf& bsdf, const Vec3f& wi);
 [[nodiscard]] BsdfSample sample_bsdf(const MicrofacetBsdf& bsdf, const DirectionNumbers& numbers);
 [[nodiscard]] BsdfSample sample_bsdf(const MicrofacetBsdf& bsdf, const VertexKey& vertex);
 
 /// Takes lobes out; sampling then picks among the rest.
 struct FacetsLeftOut {
-  bool diffuse = false, reflection = false, transmission = false;
+  bool diffuse = false, diffuse_through = false, reflection = false, transmission = false;
 };
 void leave_out(MicrofacetBsdf& bsdf, const FacetsLeftOut& lobes);
 

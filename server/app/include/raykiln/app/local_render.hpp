@@ -9,6 +9,7 @@
 #include "raykiln/app/scene_package.hpp"
 #include "raykiln/image/film.hpp"
 #include "raykiln/jobs/job_snapshot.hpp"
+#include "raykiln/store/store.hpp"
 #include "raykiln/workers/local_pool.hpp"
 
 namespace raykiln::server {
@@ -16,6 +17,7 @@ namespace raykiln::server {
 struct LocalPicture {
   render::Image image;
   std::vector<float> error, samples;  ///< standard errors (3 a pixel), samples (1 a pixel)
+  std::vector<StoredLayer> layers;    ///< those that the request asks for
   JobSnapshot job;  ///< completed, with statistics and warnings; its id is empty
 };
 

@@ -23,6 +23,7 @@ enum class DirectionSampling { kBsdf, kUniformSphere };
 enum class Sampler { kRandom, kSobol };
 enum class PixelFilter { kBox, kBlackmanHarris };
 enum class EmitterChoice { kAuto, kPower, kTree };
+enum class TextureFilter { kExact, kFootprint };
 
 /// When a picture is done: whichever comes first.
 struct StopRule {
@@ -80,10 +81,13 @@ struct JobRequest {
   DirectionSampling direction_sampling = DirectionSampling::kBsdf;
   bool emitter_sampling = true;
   EmitterChoice emitter_choice = EmitterChoice::kAuto;
+  TextureFilter texture_filter = TextureFilter::kExact;
   Sampler sampler = Sampler::kRandom;
   /// "auto", "all" or "without=refraction,roulette": which effects are simulated. The names are the
   /// renderer's; whoever reads a request from outside checks them.
   std::string effects = "auto";
+  /// "albedo,depth": layers that are made beside the picture, by the renderer's names and in its order.
+  std::string layers{};
   /// Samples go where the error is, by cells of 16 x 16 pixels, which are the tiles then (kAdaptiveTile); needs
   /// an error or a time to stop at, and stop.samples is the most of any pixel.
   bool adaptive = false;
@@ -95,11 +99,13 @@ struct JobRequest {
 [[nodiscard]] std::string_view name(Sampler value);
 [[nodiscard]] std::string_view name(PixelFilter value);
 [[nodiscard]] std::string_view name(EmitterChoice value);
+[[nodiscard]] std::string_view name(TextureFilter value);
 [[nodiscard]] std::optional<PixelMode> pixel_mode_named(std::string_view name);
 [[nodiscard]] std::optional<DirectionSampling> direction_sampling_named(std::string_view name);
 [[nodiscard]] std::optional<Sampler> sampler_named(std::string_view name);
 [[nodiscard]] std::optional<PixelFilter> filter_named(std::string_view name);
 [[nodiscard]] std::optional<EmitterChoice> emitter_choice_named(std::string_view name);
+[[nodiscard]] std::optional<TextureFilter> texture_filter_named(std::string_view name);
 
 /// Reflections after the first hit at which paths end: as asked for, else 1024 where roulette ends
 /// them before (one ray a hit), else 8.

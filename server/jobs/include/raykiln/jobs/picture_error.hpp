@@ -50,7 +50,7 @@ inline constexpr std::uint64_t kErrorFloor = 64;
 [[nodiscard]] bool target_met(const StopRule& rule, const PictureError& error);
 
 /// Samples a pixel at which the error is judged next, after a decision at `samples`: the floor first,
-/// then steps of a tenth, by which the error moves by 5 %.
+/// then steps of a twentieth, by which the error moves by 2.5 %: so much more than was asked for may be rendered.
 [[nodiscard]] std::uint64_t next_decision(std::uint64_t samples);
 
 /// How far an error is on its way to the target, in time: (target / error)^2, at most 0.99.

@@ -19,7 +19,7 @@ namespace raykiln::server {
 /// The renderer's word for what the request asks for.
 [[nodiscard]] render::Sampler sampler_of(const JobRequest& request);
 
-/// Bytes that a job's film and its picture take while it is active; saturates.
+/// Bytes that a job's film, its picture and its layers take while it is active; saturates.
 [[nodiscard]] std::uint64_t film_memory(const JobRequest& request);
 
 /// Adds what the light model gets wrong in this scene ("heavy_tailed", "not_conserving_refraction"

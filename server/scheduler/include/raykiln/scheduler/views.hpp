@@ -76,6 +76,7 @@ struct JobImage {
   /// Standard errors (3 a pixel; NaN: unknown), samples and worker seconds (1 a pixel each). Empty where only
   /// the picture was asked for, or was stored.
   std::vector<float> error, samples, seconds;
+  std::vector<StoredLayer> layers;  ///< those that the job asks for; empty like these
   std::string scene;           ///< scene id
   JobRequest request;
   EffectReport effects;        ///< of the job

@@ -67,12 +67,19 @@ class SceneUpload {
   [[nodiscard]] virtual std::vector<BlobFile> files() const = 0;
 };
 
+/// A layer that was asked for.
+struct StoredLayer {
+  std::string name;
+  std::vector<float> values;  ///< 1 to 4 a pixel
+};
+
 /// A linear picture as it was when the job ended. RGB, 3 floats a pixel, row 0 at the top.
 struct StoredImage {
   int width = 0, height = 0;
   std::vector<float> rgb;
   /// Standard errors (3 a pixel), samples and worker seconds (1 a pixel each); none or all of them.
   std::vector<float> error{}, samples{}, seconds{};
+  std::vector<StoredLayer> layers{};  ///< only with those
 };
 
 struct JobRecord {

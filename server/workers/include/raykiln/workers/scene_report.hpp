@@ -27,6 +27,8 @@ struct SceneReport {
   std::uint64_t dropped_triangles = 0;  ///< of zero area
   std::vector<std::string> materials;   ///< names; at most 1000 are kept
   std::uint64_t material_count = 0;
+  std::vector<std::string> objects;     ///< likewise; none in reports of older versions
+  std::uint64_t object_count = 0;
   std::uint64_t point_lights = 0, spot_lights = 0, directional_lights = 0;
   bool environment = false;  ///< lit by an environment map
   std::uint64_t emissive_triangles = 0;

@@ -1,0 +1,162 @@
+#include "matte_group.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "raykiln/accel/kernels.hpp"
+#include "raykiln/shading/punctual_light.hpp"
+
+namespace raykiln::render {
+namespace {
+
+static_assert(sizeof(LaneRay) == sizeof(Ray) && sizeof(LaneHit) == sizeof(Hit));
+static_assert(offsetof(LaneHit, id) == offsetof(Hit, id) && offsetof(LaneHit, u) == offsetof(Hit, u));
+static_assert(sizeof(LanePath) == sizeof(PathState) && offsetof(PathState, key) == 0 &&
+              offsetof(LanePath, point) == offsetof(PathKey, point) &&
+              offsetof(LanePath, throughput) == offsetof(PathState, throughput) &&
+              offsetof(LanePath, scale) == offsetof(PathState, scale) &&
+              offsetof(LanePath, pdf) == offsetof(PathState, pdf) &&
+              offsetof(LanePath, node) == offsetof(PathState, node) &&
+              offsetof(LanePath, slot) == offsetof(PathState, slot) &&
+              offsetof(LanePath, bounce) == offsetof(PathState, bounce));
+static_assert(sizeof(LaneReceiver) == sizeof(EmitterReceiver) &&
+              offsetof(LaneReceiver, both_sides) == offsetof(EmitterReceiver, both_sides));
+static_assert(offsetof(PathResult, emitted) == 0 && sizeof(PathResult) % sizeof(double) == 0);
+
+/// Beyond, tables that are made once a task would cost more than they save.
+constexpr std::size_t kMostMaterials = 4096;
+constexpr std::size_t kMostLights = 255;
+constexpr std::size_t kBatch = 256;
+constexpr std::size_t kBatchShadows = 4096;  ///< shadow rays of a batch
+
+MatteKernel kernel_for(Traversal traversal) {
+#ifdef RAYKILN_X86_KERNELS
+  const Traversal chosen = resolve(traversal);
+  if (chosen == Traversal::kAvx512) return matte_kernel_avx512();
+  if (chosen == Traversal::kAvx2) return matte_kernel_avx2();
+#else
+  (void)traversal;
+#endif
+  return nullptr;
+}
+
+/// Is everything that these settings ask for at such a vertex in the kernel?
+bool covers(const Transport& t) {
+  const PathSettings& s = t.settings;
+  return s.branches == 1 && s.max_depth > 0 && s.left_out.empty() &&
+         s.bsdf.direction_sampling == DirectionSampling::kBsdf &&
+         s.bsdf.light.diffuse_sampling == DiffuseSampling::kCosine && t.environment == nullptr &&
+         t.textures == nullptr && !t.gaps.any() && t.spot_lights.empty() && t.directional_lights.empty() &&
+         t.point_lights.size() <= kMostLights && t.scene.materials.size() <= kMostMaterials;
+}
+
+bool plain(const Material& m) {
+  const Rgb black(0.0F);
+  return m.model == SurfaceModel::kPhong && m.diffuse != black && m.specular == black && m.transparent == 0.0F &&
+         m.emission == black && m.facets.absorption == black;
+}
+
+LaneDraw draw_from_tree(const void* tree, const LaneReceiver& receiver, double u) {
+  const EmitterReceiver at{Vec3f(receiver.p[0], receiver.p[1], receiver.p[2]),
+                           Vec3f(receiver.normal[0], receiver.normal[1], receiver.normal[2]),
+                           receiver.both_sides};
+  const auto drawn = static_cast<const EmitterTree*>(tree)->sample(at, u);
+  return drawn ? LaneDraw{drawn->triangle, drawn->pdf_area} : LaneDraw{kNoHit, 0.0};
+}
+
+void append(std::vector<float>& table, const Rgb& colour) {
+  table.insert(table.end(), {colour.x, colour.y, colour.z});
+}
+
+}  // namespace
+
+MatteGroup::MatteGroup(const Transport& transport) : mesh_(transport.mesh), max_depth_(transport.settings.max_depth) {
+  if (mesh_.triangles.empty() || !covers(transport)) return;
+  kernel_ = kernel_for(transport.settings.traversal);
+  if (kernel_ == nullptr) return;
+  if (transport.normals && !mesh_.corner_normals.empty()) corner_normals_ = mesh_.corner_normals.data();
+  read_materials(transport.scene.materials);
+  read_lights(transport);
+  batch_ = std::clamp(kBatchShadows / (lights_.size() + 1), std::size_t{8}, kBatch);
+  chosen_.reserve(batch_);
+
+  query_.positions = &mesh_.positions.data()->x;
+  query_.triangles = mesh_.triangles.data()->data();
+  query_.material_ids = mesh_.material_ids.data();
+  query_.diffuse = diffuse_.data();
+  query_.emission = emission_.data();
+  query_.roulette = transport.settings.bsdf.light.roulette;
+  query_.bounces_before_roulette = static_cast<std::uint32_t>(kFirstDrawAfter);
+  query_.roulette_factor = kRouletteFactor;
+  query_.sobol = transport.settings.sampler == Sampler::kSobol;
+  for (std::size_t j = 0; j < sobol_third_.size(); ++j) {
+    sobol_third_[j] = sobol::kThird.of_digits[j / 4][std::size_t{1} << (j % 4)];
+  }
+  query_.sobol_third = sobol_third_.data();
+  query_.emitted_stride = sizeof(PathResult) / sizeof(double);
+}
+
+void MatteGroup::read_materials(const std::vector<Material>& materials) {
+  for (const Material& material : materials) {
+    plain_.push_back(plain(material) ? 1 : 0);
+    append(diffuse_, material.diffuse);
+    append(emission_, material.emission);
+  }
+}
+
+void MatteGroup::read_lights(const Transport& transport) {
+  for (const PointLight& light : transport.point_lights) {
+    const auto range = static_cast<double>(light.range);
+    lights_.push_back({.position = {static_cast<double>(light.position.x), static_cast<double>(light.position.y),
+                                    static_cast<double>(light.position.z)},
+                       .intensity = {static_cast<double>(light.intensity.x), static_cast<double>(light.intensity.y),
+                                     static_cast<double>(light.intensity.z)},
+                       .range2 = light.range < kEndlessRange ? range * range : 0.0});
+  }
+  query_.point_lights = lights_.data();
+  query_.point_light_count = lights_.size();
+  const Emitters& emitters = transport.emitters;
+  query_.emitter_sampling = transport.settings.emitter_sampling;
+  if (!query_.emitter_sampling) return;
+  query_.emitters = emitters.triangles().data();
+  query_.cumulative = emitters.cumulative().data();
+  query_.emitter_count = emitters.triangles().size();
+  for (std::uint32_t m = 0; m < transport.scene.materials.size(); ++m) pdf_area_.push_back(emitters.pdf_area(m));
+  query_.pdf_area = pdf_area_.data();
+  if (!transport.emitters_by_tree) return;
+  query_.tree = &emitters.tree(transport.scene);
+  query_.draw = draw_from_tree;
+}
+
+void MatteGroup::shade(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks) {
+  if (chosen_.empty()) return;
+  PathStream& next = sinks.next;
+  const std::size_t before = next.size();
+  MatteQuery query = query_;
+  query.rays = reinterpret_cast<const LaneRay*>(range.front.rays.data() + range.begin);
+  query.hits = reinterpret_cast<const LaneHit*>(range.hits.data());
+  query.paths = reinterpret_cast<const LanePath*>(range.front.states.data() + range.begin);
+  query.chosen = chosen_.data();
+  query.chosen_count = chosen_.size();
+  next.resize(before + chosen_.size(), transport.emitters_by_tree);
+  query.next_rays = reinterpret_cast<LaneRay*>(next.rays.data() + before);
+  query.next_paths = reinterpret_cast<LanePath*>(next.states.data() + before);
+  query.next_origins =
+      transport.emitters_by_tree ? reinterpret_cast<LaneReceiver*>(next.origins.data() + before) : nullptr;
+  const ShadowQueue::Room room = sinks.shadows.open(chosen_.size() * (lights_.size() + 1));
+  query.shadow_rays = reinterpret_cast<LaneRay*>(room.rays);
+  query.shadow_lights = reinterpret_cast<LaneLight*>(room.waiting);
+  query.emitted = &sinks.results.data()->emitted.x;
+  MatteCounts counts{};
+  kernel_(query, counts);
+  chosen_.clear();
+  next.resize(before + counts.next, transport.emitters_by_tree);
+  sinks.shadows.close(room, counts.shadows);
+  sinks.stats.roulette_ends += counts.roulette_ends;
+  sinks.stats.lights_at_hits += counts.lights_at_hits;
+  if (!sinks.shadows.full()) return;
+  sinks.shadows.flush(transport.tree, transport.settings.traversal, sinks.results, sinks.stats);
+  sinks.stopped = sinks.stop.stop_requested();
+}
+
+}  // namespace raykiln::render

@@ -1,0 +1,107 @@
+// What passes between the shading of one vertex at a time and the kernels that shade several at once, each
+// of which is compiled for one instruction set. Plain data and pointers only, as in renderer/accel: an inline
+// function here would be compiled once with AVX and once without, and the linker would keep either.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace raykiln::render {
+
+/// Ray, as it lies in memory.
+struct LaneRay {
+  float o[3], t_min, d[3], t_max;
+};
+
+/// Hit, as it lies in memory.
+struct LaneHit {
+  float t;
+  std::uint32_t id;
+  float u, v;
+};
+
+/// PathState, as it lies in memory.
+struct LanePath {
+  std::uint64_t key_a, key_b, point;
+  double throughput[3];
+  double scale, pdf;
+  std::uint64_t node;
+  std::uint32_t slot;
+  std::uint16_t bounce;
+  bool met_diffuse;
+};
+
+/// EmitterReceiver, as it lies in memory.
+struct LaneReceiver {
+  float p[3], normal[3];
+  bool both_sides;
+};
+
+/// The light of a shadow ray and whose it is.
+struct LaneLight {
+  double light[3];
+  std::uint32_t slot;
+};
+
+struct LanePointLight {
+  double position[3], intensity[3];
+  double range2;  ///< square of the range; 0: endless
+};
+
+/// EmitterTree::Draw, of density 0 where nothing can be drawn.
+struct LaneDraw {
+  std::uint32_t triangle;
+  double pdf_area;
+};
+
+/// Reads of one scene, and where the outcome goes. Vertices lie on flat triangles of diffuse, opaque materials
+/// that do not shine; directions are sampled by the cosine, one ray goes on from each, and all of them may go on.
+struct MatteQuery {
+  const float* positions;
+  const std::uint32_t* triangles;
+  const std::uint32_t* material_ids;
+  const float* diffuse;   ///< of each material, 3 floats
+  const float* emission;  ///< of each material, 3 floats
+
+  bool emitter_sampling, roulette, sobol;
+  std::uint32_t bounces_before_roulette;
+  double roulette_factor;
+  const std::uint32_t* sobol_third;  ///< a column for each digit of an index
+
+  const std::uint32_t* emitters;  ///< triangles
+  const double* cumulative;       ///< of their weights
+  std::size_t emitter_count;
+  const double* pdf_area;  ///< one a material
+  LaneDraw (*draw)(const void* tree, const LaneReceiver& receiver, double u);
+  const void* tree;  ///< null where emitters are drawn by power
+
+  const LanePointLight* point_lights;
+  std::size_t point_light_count;
+
+  const LaneRay* rays;
+  const LaneHit* hits;
+  const LanePath* paths;
+  const std::uint32_t* chosen;  ///< which of them are vertices of this kind
+  std::size_t chosen_count;
+
+  LaneRay* next_rays;  ///< room for one a vertex, and so for what goes with it
+  LanePath* next_paths;
+  LaneReceiver* next_origins;  ///< null where emitters are not drawn from a tree
+  LaneRay* shadow_rays;        ///< room for one a vertex and light, and one more a vertex
+  LaneLight* shadow_lights;
+  double* emitted;  ///< of slot 0; poisoned by throughputs that are not finite
+  std::size_t emitted_stride;
+};
+
+struct MatteCounts {
+  std::size_t next, shadows;
+  std::uint64_t roulette_ends, lights_at_hits;
+};
+
+using MatteKernel = void (*)(const MatteQuery& query, MatteCounts& counts);
+
+/// nullptr where this build has no such kernel.
+MatteKernel matte_kernel_avx2();
+MatteKernel matte_kernel_avx512();
+
+}  // namespace raykiln::render
