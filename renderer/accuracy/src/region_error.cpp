@@ -122,4 +122,21 @@ void add_region(Totals& totals, const Film& film, const PixelRect& core, int mar
   totals.tails += in_tails(region, errors);  // the relative ones
 }
 
+NoiseSum noise_of_one_sample(const Film& film, const PixelRect& core, double floor) {
+  const Region region(film, core, kWindowRadius);
+  const auto means = smoothed_means(region.pixels, region.windows(kWindowRadius));
+  NoiseSum sum;
+  region.windows(kWindowRadius).each(region.core, [&](std::size_t i) {
+    const PixelStatistics& pixel = region.pixels[i];
+    double squares = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (pixel.variance[c] > 0.0) squares += pixel.variance[c] / (means[c][i] * means[c][i] + floor);
+    }
+    squares *= static_cast<double>(pixel.samples);
+    sum.value += squares;
+    sum.variance += pixel.scatter * squares * squares;
+  });
+  return sum;
+}
+
 }  // namespace raykiln::render

@@ -42,4 +42,11 @@ inline constexpr int kRegionMargin = 4;
 /// Adds the pixels of `core`, judged with up to `margin` more around; `gain` is for display values.
 void add_region(Totals& totals, const Film& film, const PixelRect& core, int margin, const Survey& survey, double gain);
 
+/// Relative squares of the noise of one sample, as `Totals::relative` has them for the mean of all, summed over the core's pixels and
+/// channels; and the variance of that sum, as far as its samples tell.
+struct NoiseSum {
+  double value = 0.0, variance = 0.0;
+};
+[[nodiscard]] NoiseSum noise_of_one_sample(const Film& film, const PixelRect& core, double floor);
+
 }  // namespace raykiln::render
