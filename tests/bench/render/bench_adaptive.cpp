@@ -4,11 +4,14 @@
 // interval of its error is at the target, judged at 64 samples and where jobs are; once with the same samples everywhere, once
 // placed by cells. Truth is the mean of the other seeds' even pictures (Celarek et al. 2019), whose own noise is taken off.
 // "gain" is the ratio of processor seconds times squared true error: time to equal error, as error^2 falls like 1/time; "gain_in_rays"
-// the same with rays for seconds, which no other program disturbs.
+// the same with rays for seconds, which no other program disturbs, and its 95 % interval by the jackknife over seeds. Where a few bright samples
+// make up the errors it wanders by half between seeds, and "gain_by_plan" says more: what even samples and the placed ones would leave of the noise
+// of the cells that the even pictures of all other seeds have against the truth, so that the same bright samples weigh on both sides.
 // "bound" is what the noise V of the cells and the rays c of their samples allow at most, without floor or caution: sum c sum V / (sum
 // sqrt(c V))^2; "bound_in_samples" the same where a sample costs as much everywhere; "left" what the plan for 1024 samples on average leaves
 // of it, made from 64 samples of another seed. With 0 SEEDS these alone, with --targets nothing adaptive.
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -21,6 +24,7 @@
 #include "raykiln/accuracy/allocation.hpp"
 #include "raykiln/accuracy/image_error.hpp"
 #include "raykiln/accuracy/pixel_error.hpp"
+#include "raykiln/accuracy/quantiles.hpp"
 #include "raykiln/accuracy/true_error.hpp"
 #include "raykiln/io/import.hpp"
 #include "raykiln/scheduler/judge_picture.hpp"
@@ -36,6 +40,7 @@ struct Run {
   double render_seconds = 0.0, decide_seconds = 0.0, samples = 0.0, rays = 0.0;
   int decisions = 0;
   bool flagged = false;
+  std::vector<std::uint64_t> cells;  ///< samples a pixel of each
   std::vector<double> picture;
   [[nodiscard]] double seconds() const { return render_seconds + decide_seconds; }
 };
@@ -116,6 +121,7 @@ Run run(const PreparedScene& scene, const RenderSettings& settings, double targe
   }
   result.samples = cells.mean_samples();
   result.rays = std::accumulate(cells.rays().begin(), cells.rays().end(), 0.0);
+  result.cells = cell_samples(cells.film());
   result.picture = pixel_errors(cells.film()).mean;
   return result;
 }
@@ -155,21 +161,10 @@ Pilot pilot(const PreparedScene& scene, RenderSettings settings, std::uint64_t s
   const double error = image_error(cells.film()).error.value;
   if (!(error > 0.0)) return {};
   const double digit = std::pow(10.0, std::floor(std::log10(error)) - 1.0);
-  const PixelErrors errors = pixel_errors(cells.film());
-  double whole = 0.0;
-  for (const double mean : errors.mean) whole += mean / static_cast<double>(errors.mean.size());
-  const int across = (settings.width + kCellSide - 1) / kCellSide;
-  std::vector<double> noise(cells.even(0).size()), pixels(noise.size());
-  for (int y = 0; y < settings.height; ++y) {
-    for (int x = 0; x < settings.width; ++x) {
-      const auto cell = static_cast<std::size_t>(y / kCellSide * across + x / kCellSide);
-      const auto i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(settings.width) + static_cast<std::size_t>(x));
-      pixels[cell] += 1.0;
-      for (std::size_t c = i; c < i + 3; ++c) {
-        const double mean = errors.mean[c], e = errors.standard_error[c];
-        if (e > 0.0) noise[cell] += e * e / (mean * mean + 0.01 * whole * whole);
-      }
-    }
+  std::vector<double> noise, pixels;
+  for (const CellNoise& cell : cell_noise(cells.film())) {
+    noise.push_back(cell.pixels * cell.noise);
+    pixels.push_back(cell.pixels);
   }
   --settings.seed;
   Cells first(scene, settings);
@@ -178,34 +173,108 @@ Pilot pilot(const PreparedScene& scene, RenderSettings settings, std::uint64_t s
   return {digit * std::ceil(error / digit), saving(cells.rays(), noise), saving(pixels, noise), saving(cells.rays(), noise, plan)};
 }
 
-/// True errors over the target, their mean square, and how many lie where they should.
+/// Against the mean of the other even pictures of the same scene.
+class Truths {
+ public:
+  Truths(const std::vector<Run>& even, const RenderSettings& settings)
+      : even_(even), settings_(settings), sum_(even[0].picture.size()), own_noise_(1.0 / static_cast<double>(even.size() - 1)) {
+    for (const Run& r : even) {
+      for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += r.picture[i];
+    }
+    for (std::size_t s = 0; s < even.size(); ++s) {
+      const std::vector<double> of_cells = squares_of_cells(even[s].picture, without(s));
+      noise_.resize(of_cells.size());
+      noise_of_.emplace_back();
+      double square = 0.0;
+      for (std::size_t c = 0; c < of_cells.size(); ++c) {
+        square += of_cells[c] / static_cast<double>(sum_.size());
+        noise_of_.back().push_back(of_cells[c] * static_cast<double>(even[s].cells[c]));
+        noise_[c] += noise_of_.back().back();
+      }
+      of_even_ += square / (1.0 + own_noise_) / static_cast<double>(even.size());
+    }
+  }
+  /// Of a picture of seed `s`, less the truth's own noise, which is a share of that of the even pictures.
+  [[nodiscard]] double square(const Run& run, std::size_t s) const {
+    return std::max(0.0, true_error(run.picture, without(s)).rel_mse - of_even_ * own_noise_);
+  }
+  /// What the samples of a run leave of the noise that cells have in all other seeds, but for a factor.
+  [[nodiscard]] double left(const Run& run, std::size_t s) const {
+    double left = 0.0;
+    for (std::size_t c = 0; c < noise_.size(); ++c) left += (noise_[c] - noise_of_[s][c]) / static_cast<double>(run.cells[c]);
+    return left;
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> without(std::size_t s) const {
+    std::vector<double> truth(sum_.size());
+    for (std::size_t i = 0; i < sum_.size(); ++i) truth[i] = (sum_[i] - even_[s].picture[i]) * own_noise_;
+    return truth;
+  }
+  [[nodiscard]] std::vector<double> squares_of_cells(const std::vector<double>& picture, const std::vector<double>& truth) const {
+    const double whole = std::accumulate(truth.begin(), truth.end(), 0.0) / static_cast<double>(truth.size());
+    const int across = (settings_.width + kCellSide - 1) / kCellSide, down = (settings_.height + kCellSide - 1) / kCellSide;
+    std::vector<double> squares(static_cast<std::size_t>(across * down));
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+      const int pixel = static_cast<int>(i / 3), x = pixel % settings_.width, y = pixel / settings_.width;
+      const double off = picture[i] - truth[i];
+      squares[static_cast<std::size_t>(y / kCellSide * across + x / kCellSide)] += off * off / (truth[i] * truth[i] + 0.01 * whole * whole);
+    }
+    return squares;
+  }
+
+  const std::vector<Run>& even_;
+  RenderSettings settings_;
+  std::vector<double> sum_;
+  double own_noise_;
+  double of_even_ = 0.0;
+  std::vector<std::vector<double>> noise_of_;  ///< for one sample, of each seed and cell
+  std::vector<double> noise_;                  ///< the same, summed over the seeds
+};
+
+/// True errors over the target, their squares, and how many lie where they should.
 struct Kept {
-  double least = 1e9, largest = 0.0, mean_square = 0.0;
+  double least = 1e9, largest = 0.0;
+  std::vector<double> squares;
   int within = 0, flagged = 0;
 };
-Kept judge(const std::vector<Run>& runs, const std::vector<Run>& even, double target) {
+Kept judge(const std::vector<Run>& runs, const Truths& truths, double target) {
   Kept kept;
-  const auto n = static_cast<double>(even.size());
-  std::vector<double> sum(even[0].picture.size()), truth(sum.size());
-  for (const Run& r : even) {
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += r.picture[i];
-  }
-  double of_even = 0.0;  // mean square of the even pictures: the truth's own noise is a share of it
-  for (const Run& r : even) {
-    for (std::size_t i = 0; i < sum.size(); ++i) truth[i] = (sum[i] - r.picture[i]) / (n - 1.0);
-    of_even += true_error(r.picture, truth).rel_mse / (1.0 + 1.0 / (n - 1.0)) / n;
-  }
   for (std::size_t s = 0; s < runs.size(); ++s) {
-    for (std::size_t i = 0; i < sum.size(); ++i) truth[i] = (sum[i] - even[s].picture[i]) / (n - 1.0);
-    const double square = std::max(0.0, true_error(runs[s].picture, truth).rel_mse - of_even / (n - 1.0));
-    const double ratio = std::sqrt(square) / target;
+    kept.squares.push_back(truths.square(runs[s], s));
+    const double ratio = std::sqrt(kept.squares.back()) / target;
     kept.within += ratio >= 0.7 && ratio <= 1.05 ? 1 : 0;
     kept.flagged += runs[s].flagged ? 1 : 0;
     kept.least = std::min(kept.least, ratio);
     kept.largest = std::max(kept.largest, ratio);
-    kept.mean_square += square / static_cast<double>(runs.size());
   }
   return kept;
+}
+
+/// sum of costs x sum of squares, even over placed, without seed `but`.
+template <typename Cost>
+double gain(const std::vector<Run>& even, const Kept& of_even, const std::vector<Run>& placed, const Kept& of_placed, Cost cost,
+            std::size_t but = SIZE_MAX) {
+  double e = 0.0, p = 0.0, e2 = 0.0, p2 = 0.0;
+  for (std::size_t s = 0; s < even.size(); ++s) {
+    if (s == but) continue;
+    e += cost(even[s]);
+    p += cost(placed[s]);
+    e2 += of_even.squares[s];
+    p2 += of_placed.squares[s];
+  }
+  return e * e2 / (p * p2);
+}
+
+/// Half of a 95 % interval of the logarithm of a gain: what each seed moves it by when left out.
+template <typename Gain>
+double log_interval(std::size_t seeds, Gain gain_without) {
+  double mean = 0.0, squares = 0.0;
+  const auto n = static_cast<double>(seeds);
+  std::vector<double> logs;
+  for (std::size_t s = 0; s < seeds; ++s) mean += logs.emplace_back(std::log(gain_without(s))) / n;
+  for (const double log : logs) squares += (log - mean) * (log - mean);
+  return student_t95(n - 1.0) * std::sqrt((n - 1.0) / n * squares);
 }
 
 struct Sums {
@@ -256,20 +325,30 @@ void measure(const Measured& what, const Question& asked, bool first) {
     even.push_back(run(scene, settings, found.target, false));
     if (!asked.even_alone) placed.push_back(run(scene, settings, found.target, true));
   }
-  const Kept of_even = judge(even, even, found.target);
-  const Sums e = add_up(even);
+  const Truths truths(even, settings);
+  const Kept of_even = judge(even, truths, found.target);
   const auto tell = [](const char* how, const Kept& k, const Sums& s) {
     std::printf(",\n   \"%s\": {\"samples\": %.1f, \"rays\": %.0f, \"render_seconds\": %.3f, \"decide_seconds\": %.3f, \"decisions\": %.1f, \"kept\": %d, "
                 "\"flagged\": %d, \"least\": %.3f, \"largest\": %.3f}", how, s.samples, s.rays, s.render, s.decide, s.decisions, k.within, k.flagged,
                 k.least, k.largest);
   };
+  const Sums e = add_up(even);
   tell("even", of_even, e);
   if (!asked.even_alone) {
-    const Kept of_placed = judge(placed, even, found.target);
+    const Kept of_placed = judge(placed, truths, found.target);
     const Sums p = add_up(placed);
-    const double squares = of_even.mean_square / of_placed.mean_square;
     tell("adaptive", of_placed, p);
-    std::printf(",\n   \"gain\": %.3f, \"gain_in_rays\": %.3f", (e.render + e.decide) / (p.render + p.decide) * squares, e.rays / p.rays * squares);
+    const auto rays = [](const Run& r) { return r.rays; };
+    const auto in_rays = [&](std::size_t but) { return gain(even, of_even, placed, of_placed, rays, but); };
+    double e_left = 0.0, p_left = 0.0;
+    for (std::size_t s = 0; s < even.size(); ++s) {
+      e_left += truths.left(even[s], s);
+      p_left += truths.left(placed[s], s);
+    }
+    const double half = log_interval(even.size(), in_rays), all = in_rays(SIZE_MAX);
+    std::printf(",\n   \"gain\": %.3f, \"gain_in_rays\": %.3f, \"gain_low\": %.3f, \"gain_high\": %.3f, \"gain_by_plan\": %.3f",
+                gain(even, of_even, placed, of_placed, [](const Run& r) { return r.seconds(); }), all, all * std::exp(-half), all * std::exp(half),
+                e.rays / p.rays * e_left / p_left);
   }
   std::printf("}");
   std::fflush(stdout);
