@@ -127,10 +127,12 @@ def targets(options) -> str:
 
 
 def adaptive(options) -> str:
-    lines = ["| scene | pixels, seeds | target | samples, even | adaptive | time to equal error, even : adaptive | rays | rays at most |", "|---" * 8 + "|"]
-    for row in judged(options, options.adaptive_size, str(max(3, options.seeds // 5))):
+    lines = ["| scene | pixels, seeds | target | samples, even | adaptive | time to equal error, even : adaptive | rays | by the plans | at most |",
+             "|---" * 9 + "|"]
+    for row in judged(options, options.adaptive_size, str(max(3, options.seeds // 4))):
         lines.append(f"| {row['scene']} | {row['size']}, {row['seeds']} | {100 * row['target']:.2g} % | {row['even']['samples']:.0f} | "
-                     f"{row['adaptive']['samples']:.0f} | {row['gain']:.2f} | {row['gain_in_rays']:.2f} | {row['bound']:.2f} |")
+                     f"{row['adaptive']['samples']:.0f} | {row['gain']:.2f} | {row['gain_in_rays']:.2f} ({row['gain_low']:.2f} to "
+                     f"{row['gain_high']:.2f}) | {row['gain_by_plan']:.2f} | {row['bound']:.2f} |")
     return "\n".join(lines) + "\n"
 
 

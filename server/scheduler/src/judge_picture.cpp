@@ -47,6 +47,8 @@ Decision decide(const render::Film& film, const JobRequest& request) {
   const double step = std::clamp(ahead * ahead, kLeastStep, kMostStep);
   auto mean = static_cast<std::uint64_t>(std::ceil(step * decision.error.mean_samples));
   const auto there = render::cell_samples(film);
+  const auto cells = render::cell_noise(film);
+  const int across = (film.width() + render::kCellSide - 1) / render::kCellSide;
   const auto moves = [&] {
     for (std::size_t i = 0; i < there.size(); ++i) {
       const std::uint64_t wanted = decision.samples[i];
@@ -55,7 +57,7 @@ Decision decide(const render::Film& film, const JobRequest& request) {
     return false;
   };
   while (true) {
-    decision.samples = render::allocate_samples(film, static_cast<double>(mean), request.stop.samples);
+    decision.samples = render::place_samples(cells, across, static_cast<double>(mean), request.stop.samples);
     if (moves() || mean >= request.stop.samples) return decision;
     mean = next_decision(mean);
   }
