@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 #include <vector>
@@ -114,13 +115,22 @@ inline std::vector<render::Ray> hard_rays(const render::KdTree& tree, const Test
   return rays;
 }
 
-/// Every walk that this processor can run.
-inline std::vector<render::Traversal> walks() {
-  std::vector<render::Traversal> result{render::Traversal::kScalar};
-  for (const auto kernel : {render::Traversal::kAvx2, render::Traversal::kAvx512}) {
-    if (render::is_available(kernel)) result.push_back(kernel);
+inline constexpr std::array kTriangleTests{render::TriangleTest::kWatertight,
+                                           render::TriangleTest::kFast};
+
+/// Every walk that this processor can run, with a test.
+inline std::vector<render::Traversal> walks(
+    render::TriangleTest test = render::TriangleTest::kWatertight) {
+  std::vector<render::Traversal> result;
+  for (const auto kernel :
+       {render::Traversal::kScalar, render::Traversal::kAvx2, render::Traversal::kAvx512}) {
+    if (render::is_available(kernel)) result.push_back(render::with_test(kernel, test));
   }
   return result;
+}
+
+inline render::Traversal brute_force(render::TriangleTest test) {
+  return render::with_test(render::Traversal::kBruteForce, test);
 }
 
 inline bool same_bits(const render::Hit& a, const render::Hit& b) {

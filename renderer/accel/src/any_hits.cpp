@@ -1,6 +1,7 @@
 #include <cassert>
 
 #include "brute_force.hpp"
+#include "fast_test.hpp"
 #include "lane_search.hpp"
 #include "raykiln/accel/kernels.hpp"
 #include "scalar_walk.hpp"
@@ -8,22 +9,22 @@
 namespace raykiln::render {
 namespace {
 
-template <int W>
+template <class Test, int W>
 Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, const Ray& ray,
                   TraversalCounters& counters) {
   Occlusion found = Occlusion::kNone;
-  ShearedRay sheared;
-  if (!prepare(ray, sheared)) {
+  typename Test::Prepared prepared;
+  if (!Test::prepare(ray, tree.box, prepared)) {
     ++counters.unusable_rays;
     return found;
   }
   if (tree.box.empty()) return found;
   constexpr float kNoLimit = std::numeric_limits<float>::infinity();
-  ScalarWalk walk(tree, ray, counters);
+  ScalarWalk walk(Test{}, tree, ray, counters);
   walk.run(kNoLimit, [&](std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t b = first; b < first + count; ++b) {
       ++counters.block_tests;
-      const bool opaque = test_block(sheared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
+      const bool opaque = Test::block(prepared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
         found = tree.opaque(hit.id) ? Occlusion::kOpaque : Occlusion::kUndecided;
         return found == Occlusion::kOpaque;
       });
@@ -32,6 +33,16 @@ Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, c
     return false;
   });
   return found;
+}
+
+template <class Test>
+void one_by_one(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> result,
+                TraversalCounters& counters) {
+  with_blocks(tree, [&](const auto& blocks) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      result[i] = any_hit<Test>(tree, blocks, rays[i], counters);
+    }
+  });
 }
 
 }  // namespace
@@ -43,19 +54,18 @@ void any_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion
   counts.calls = 1;
   counts.rays = rays.size();
   const Traversal chosen = resolve(traversal);
+  const TriangleTest test = test_of(chosen);
   const LaneKernel kernel = rays.size() < kFewRays || tree.box.empty()
                                 ? nullptr
                                 : lane_kernel(chosen, LaneMode::kAny, tree.params.leaf_width);
-  if (chosen == Traversal::kBruteForce) {
-    any_hits_brute_force(tree, rays, result.first(rays.size()), counts);
+  if (chosen == Traversal::kBruteForce || chosen == Traversal::kFastBruteForce) {
+    any_hits_brute_force(tree, rays, result.first(rays.size()), test, counts);
   } else if (kernel != nullptr) {
-    any_hits_in_lanes(kernel, tree, rays, result.first(rays.size()), counts);
+    any_hits_in_lanes(kernel, tree, rays, result.first(rays.size()), test, counts);
+  } else if (test == TriangleTest::kFast) {
+    one_by_one<FastTest>(tree, rays, result, counts);
   } else {
-    with_blocks(tree, [&](const auto& blocks) {
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        result[i] = any_hit(tree, blocks, rays[i], counts);
-      }
-    });
+    one_by_one<WatertightTest>(tree, rays, result, counts);
   }
   if (counters != nullptr) *counters += counts;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "fast_test.hpp"
 #include "triangle_test.hpp"
 
 namespace raykiln::render {
@@ -10,17 +11,19 @@ namespace {
 
 constexpr int kWidth = 8;
 
+template <class Test>
 struct LiveRay {
-  ShearedRay sheared;
+  typename Test::Prepared prepared;
   std::size_t index;  // in the caller's arrays
 };
 
-std::vector<LiveRay> prepare_all(std::span<const Ray> rays) {
-  std::vector<LiveRay> live;
+template <class Test>
+std::vector<LiveRay<Test>> prepare_all(const KdTree& tree, std::span<const Ray> rays) {
+  std::vector<LiveRay<Test>> live;
   live.reserve(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    LiveRay ray{{}, i};
-    if (prepare(rays[i], ray.sheared)) live.push_back(ray);
+    LiveRay<Test> ray{{}, i};
+    if (Test::prepare(rays[i], tree.box, ray.prepared)) live.push_back(ray);
   }
   return live;
 }
@@ -43,27 +46,25 @@ std::size_t gather_block(const KdTree& tree, std::size_t first, LeafBlock<kWidth
   return i;
 }
 
-template <typename Test>
+template <class Test, typename Visit>
 void for_all_pairs(const KdTree& tree, std::span<const Ray> rays, TraversalCounters& counters,
-                   Test&& test) {
-  const std::vector<LiveRay> live = prepare_all(rays);
+                   Visit&& visit) {
+  const auto live = prepare_all<Test>(tree, rays);
   counters.unusable_rays += rays.size() - live.size();
   LeafBlock<kWidth> block;
   for (std::size_t i = 0; i < tree.triangles.size();) {
     i = gather_block(tree, i, block);
     counters.block_tests += live.size();
-    for (const LiveRay& ray : live) test(ray, block);
+    for (const LiveRay<Test>& ray : live) visit(ray, block);
   }
 }
 
-}  // namespace
-
-void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
-                              std::span<const HitOrder> after, TraversalCounters& counters) {
-  std::fill(hits.begin(), hits.end(), Hit{});
-  for_all_pairs(tree, rays, counters, [&](const LiveRay& ray, const LeafBlock<kWidth>& block) {
+template <class Test>
+void closest(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
+             std::span<const HitOrder> after, TraversalCounters& counters) {
+  for_all_pairs<Test>(tree, rays, counters, [&](const auto& ray, const LeafBlock<kWidth>& block) {
     Hit& best = hits[ray.index];
-    test_block(ray.sheared, block, counters.exact_tests, [&](const Hit& hit) {
+    Test::block(ray.prepared, block, counters.exact_tests, [&](const Hit& hit) {
       const bool counts = after.empty() || comes_after(hit, after[ray.index]);
       if (counts && comes_before(hit, best)) best = hit;
       return false;
@@ -71,17 +72,35 @@ void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std
   });
 }
 
-void any_hits_brute_force(const KdTree& tree, std::span<const Ray> rays,
-                          std::span<Occlusion> result, TraversalCounters& counters) {
-  std::fill(result.begin(), result.end(), Occlusion::kNone);
-  for_all_pairs(tree, rays, counters, [&](const LiveRay& ray, const LeafBlock<kWidth>& block) {
+template <class Test>
+void any(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> result,
+         TraversalCounters& counters) {
+  for_all_pairs<Test>(tree, rays, counters, [&](const auto& ray, const LeafBlock<kWidth>& block) {
     Occlusion& found = result[ray.index];
     if (found == Occlusion::kOpaque) return;
-    test_block(ray.sheared, block, counters.exact_tests, [&](const Hit& hit) {
+    Test::block(ray.prepared, block, counters.exact_tests, [&](const Hit& hit) {
       found = tree.opaque(hit.id) ? Occlusion::kOpaque : Occlusion::kUndecided;
       return found == Occlusion::kOpaque;
     });
   });
+}
+
+}  // namespace
+
+void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
+                              std::span<const HitOrder> after, TriangleTest test,
+                              TraversalCounters& counters) {
+  std::fill(hits.begin(), hits.end(), Hit{});
+  const auto search = test == TriangleTest::kFast ? closest<FastTest> : closest<WatertightTest>;
+  search(tree, rays, hits, after, counters);
+}
+
+void any_hits_brute_force(const KdTree& tree, std::span<const Ray> rays,
+                          std::span<Occlusion> result, TriangleTest test,
+                          TraversalCounters& counters) {
+  std::fill(result.begin(), result.end(), Occlusion::kNone);
+  const auto search = test == TriangleTest::kFast ? any<FastTest> : any<WatertightTest>;
+  search(tree, rays, result, counters);
 }
 
 }  // namespace raykiln::render

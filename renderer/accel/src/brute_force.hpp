@@ -3,14 +3,16 @@
 
 #include <span>
 
-#include "raykiln/accel/kdtree.hpp"
+#include "raykiln/accel/kernels.hpp"
 
 namespace raykiln::render {
 
 void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
-                              std::span<const HitOrder> after, TraversalCounters& counters);
+                              std::span<const HitOrder> after, TriangleTest test,
+                              TraversalCounters& counters);
 
 void any_hits_brute_force(const KdTree& tree, std::span<const Ray> rays,
-                          std::span<Occlusion> result, TraversalCounters& counters);
+                          std::span<Occlusion> result, TriangleTest test,
+                          TraversalCounters& counters);
 
 }  // namespace raykiln::render

@@ -1,6 +1,7 @@
 #include <cassert>
 
 #include "brute_force.hpp"
+#include "fast_test.hpp"
 #include "lane_search.hpp"
 #include "raykiln/accel/kernels.hpp"
 #include "scalar_walk.hpp"
@@ -8,21 +9,21 @@
 namespace raykiln::render {
 namespace {
 
-template <int W>
+template <class Test, int W>
 Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, const Ray& ray,
                 const HitOrder* after, TraversalCounters& counters) {
   Hit best;
-  ShearedRay sheared;
-  if (!prepare(ray, sheared)) {
+  typename Test::Prepared prepared;
+  if (!Test::prepare(ray, tree.box, prepared)) {
     ++counters.unusable_rays;
     return best;
   }
   if (tree.box.empty()) return best;
-  ScalarWalk walk(tree, ray, counters);
+  ScalarWalk walk(Test{}, tree, ray, counters);
   walk.run(best.t, [&](std::uint32_t first, std::uint32_t count) {
     counters.block_tests += count;
     for (std::uint32_t b = first; b < first + count; ++b) {
-      test_block(sheared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
+      Test::block(prepared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
         const bool counts = after == nullptr || comes_after(hit, *after);
         if (counts && comes_before(hit, best)) best = hit;
         return false;
@@ -31,6 +32,16 @@ Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, con
     return false;
   });
   return best;
+}
+
+template <class Test>
+void one_by_one(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
+                std::span<const HitOrder> after, TraversalCounters& counters) {
+  with_blocks(tree, [&](const auto& blocks) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      hits[i] = closest_hit<Test>(tree, blocks, rays[i], after.empty() ? nullptr : &after[i], counters);
+    }
+  });
 }
 
 }  // namespace
@@ -43,19 +54,18 @@ void closest_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> 
   counts.calls = 1;
   counts.rays = rays.size();
   const Traversal chosen = resolve(traversal);
+  const TriangleTest test = test_of(chosen);
   const LaneKernel kernel = rays.size() < kFewRays || tree.box.empty()
                                 ? nullptr
                                 : lane_kernel(chosen, LaneMode::kClosest, tree.params.leaf_width);
-  if (chosen == Traversal::kBruteForce) {
-    closest_hits_brute_force(tree, rays, hits.first(rays.size()), after, counts);
+  if (chosen == Traversal::kBruteForce || chosen == Traversal::kFastBruteForce) {
+    closest_hits_brute_force(tree, rays, hits.first(rays.size()), after, test, counts);
   } else if (kernel != nullptr) {
-    closest_hits_in_lanes(kernel, tree, rays, hits.first(rays.size()), after, counts);
+    closest_hits_in_lanes(kernel, tree, rays, hits.first(rays.size()), after, test, counts);
+  } else if (test == TriangleTest::kFast) {
+    one_by_one<FastTest>(tree, rays, hits, after, counts);
   } else {
-    with_blocks(tree, [&](const auto& blocks) {
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        hits[i] = closest_hit(tree, blocks, rays[i], after.empty() ? nullptr : &after[i], counts);
-      }
-    });
+    one_by_one<WatertightTest>(tree, rays, hits, after, counts);
   }
   if (counters != nullptr) *counters += counts;
 }

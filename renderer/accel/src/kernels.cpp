@@ -7,13 +7,20 @@
 namespace raykiln::render {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Traversal>, 5> kNames{{
+constexpr std::array<std::pair<std::string_view, Traversal>, 10> kNames{{
     {"tree", Traversal::kTree},
     {"brute", Traversal::kBruteForce},
     {"scalar", Traversal::kScalar},
     {"avx2", Traversal::kAvx2},
     {"avx512", Traversal::kAvx512},
+    {"fast-tree", Traversal::kFastTree},
+    {"fast-brute", Traversal::kFastBruteForce},
+    {"fast-scalar", Traversal::kFastScalar},
+    {"fast-avx2", Traversal::kFastAvx2},
+    {"fast-avx512", Traversal::kFastAvx512},
 }};
+
+constexpr int kFirstFast = static_cast<int>(Traversal::kFastTree);
 
 // What the units of the kernels are compiled for; the compiler's functions ask the operating system
 // too whether it keeps the registers.
@@ -36,7 +43,7 @@ Traversal choose() {
   if (const char* wanted = std::getenv(kKernelVariable)) {
     const auto traversal = traversal_named(wanted);
     if (traversal && *traversal != Traversal::kTree && *traversal != Traversal::kBruteForce &&
-        is_available(*traversal)) {
+        test_of(*traversal) == TriangleTest::kWatertight && is_available(*traversal)) {
       return *traversal;
     }
   }
@@ -46,23 +53,30 @@ Traversal choose() {
 
 }  // namespace
 
+TriangleTest test_of(Traversal traversal) {
+  return static_cast<int>(traversal) < kFirstFast ? TriangleTest::kWatertight : TriangleTest::kFast;
+}
+
+Traversal with_test(Traversal traversal, TriangleTest test) {
+  const int walk = static_cast<int>(traversal) % kFirstFast;
+  return static_cast<Traversal>(test == TriangleTest::kFast ? walk + kFirstFast : walk);
+}
+
 bool is_available(Traversal traversal) {
-  switch (traversal) {
+  switch (with_test(traversal, TriangleTest::kWatertight)) {
     case Traversal::kAvx2: return has_avx2();
     case Traversal::kAvx512: return has_avx512();
-    case Traversal::kTree:
-    case Traversal::kBruteForce:
-    case Traversal::kScalar: break;
+    default: return true;
   }
-  return true;
 }
 
 Traversal resolve(Traversal wanted) {
-  if (wanted == Traversal::kTree) {
+  const TriangleTest test = test_of(wanted);
+  if (with_test(wanted, TriangleTest::kWatertight) == Traversal::kTree) {
     static const Traversal chosen = choose();
-    return chosen;
+    return with_test(chosen, test);
   }
-  return is_available(wanted) ? wanted : Traversal::kScalar;
+  return is_available(wanted) ? wanted : with_test(Traversal::kScalar, test);
 }
 
 std::string_view name(Traversal traversal) {

@@ -1,5 +1,6 @@
 // The lane kernels for processors with AVX2: compiled with flags of its own, includes nothing that
 // another unit compiles too.
+#include "lane_leaf.hpp"
 #include "lane_walk.hpp"
 #include "lanes8.hpp"
 
@@ -8,7 +9,8 @@ namespace {
 
 template <int kLeafWidth, bool kAnyHit>
 void walk(const LaneQuery& query, LaneCounts& counts) {
-  LaneWalk<Lanes8, Lanes8, Lanes8, Doubles4, kLeafWidth, kAnyHit, 4> lanes(query, counts);
+  using Leaf = LeafVisit<Lanes8, Lanes8, Lanes8, Doubles4, kLeafWidth, kAnyHit>;
+  LaneWalk<Lanes8, Leaf, kAnyHit, 4> lanes(query, counts);
   lanes.run();
 }
 

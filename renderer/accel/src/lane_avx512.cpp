@@ -1,5 +1,6 @@
 // The lane kernels for processors with AVX-512 (F, DQ, BW, VL): compiled with flags of its own,
 // includes nothing that another unit compiles too.
+#include "lane_leaf.hpp"
 #include "lane_walk.hpp"
 #include "lanes16.hpp"
 #include "lanes8.hpp"
@@ -11,13 +12,15 @@ constexpr std::size_t kGroups = 4;
 
 template <bool kAnyHit>
 void walk8(const LaneQuery& query, LaneCounts& counts) {
-  LaneWalk<Lanes16, Lanes8, Lanes8Twice, Doubles8, 8, kAnyHit, kGroups> lanes(query, counts);
+  using Leaf = LeafVisit<Lanes16, Lanes8, Lanes8Twice, Doubles8, 8, kAnyHit>;
+  LaneWalk<Lanes16, Leaf, kAnyHit, kGroups> lanes(query, counts);
   lanes.run();
 }
 
 template <bool kAnyHit>
 void walk16(const LaneQuery& query, LaneCounts& counts) {
-  LaneWalk<Lanes16, Lanes16, Lanes16, Doubles8, 16, kAnyHit, kGroups> lanes(query, counts);
+  using Leaf = LeafVisit<Lanes16, Lanes16, Lanes16, Doubles8, 16, kAnyHit>;
+  LaneWalk<Lanes16, Leaf, kAnyHit, kGroups> lanes(query, counts);
   lanes.run();
 }
 

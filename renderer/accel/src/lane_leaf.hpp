@@ -9,29 +9,10 @@
 #include "lane_exact.hpp"
 #include "lane_filter.hpp"
 #include "lane_query.hpp"
+#include "lane_rays.hpp"
 
 namespace raykiln::render {
 namespace {
-
-constexpr float kEndless = __builtin_inff();
-
-/// What leaves need to know of rays, a lane each; part of LaneGroup and ReadyRays.
-template <std::size_t kW>
-struct alignas(64) LeafRays {
-  float o[3][kW], inv_d[3][kW];
-  float sx[kW], sy[kW], t_min[kW], t_max[kW];  ///< t_max: not beyond the best hit so far
-  float limit[kW];          ///< cells entered beyond need no visit
-  std::uint32_t known[kW];  ///< a triangle that need not be decided again
-  // For the test in double, see shear_ray.
-  double shear_x[kW], shear_y[kW], inv_dz[kW];
-  std::uint32_t main_axis[kW];
-};
-
-/// Lanes that hold the same triangle: the first one of a row.
-template <class V>
-struct Repeated : V {
-  static typename V::F load(const float* p) { return V::set1(*p); }
-};
 
 /// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth. Twice: lanes of two
 /// neighbouring blocks, or B again. D: lanes of the test in double, dividing the others.
@@ -40,6 +21,8 @@ class LeafVisit {
  public:
   using Rays = LeafRays<V::kWidth>;
   static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
+  static constexpr bool kMoreSlack = false;
+  static constexpr bool kInDouble = true;
 
   LeafVisit(const LaneQuery& query, LaneCounts& counts) : query_(query), counts_(counts) {}
 

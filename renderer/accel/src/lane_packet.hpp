@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lane_leaf.hpp"
 #include "lane_query.hpp"
 #include "lane_setup.hpp"
 #include "walk_limits.hpp"

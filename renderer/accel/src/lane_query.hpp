@@ -19,7 +19,7 @@ struct LaneBest {
   std::uint32_t id;
 };
 
-/// A ray made ready for the test in double, see shear_ray.
+/// A ray made ready for the test in double, see shear_ray; nothing of use with the fast test.
 struct LaneShear {
   double sx, sy, inv_dz;
   std::uint64_t main_axis;
@@ -56,5 +56,8 @@ enum class LaneMode : std::uint8_t { kClosest, kAny };
 /// nullptr where this build has no such kernel. Whether the processor can run it is another matter.
 LaneKernel avx2_kernel(LaneMode mode, int leaf_width);
 LaneKernel avx512_kernel(LaneMode mode, int leaf_width);
+/// With the fast triangle test.
+LaneKernel fast_avx2_kernel(LaneMode mode, int leaf_width);
+LaneKernel fast_avx512_kernel(LaneMode mode, int leaf_width);
 
 }  // namespace raykiln::render

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "fast_test.hpp"
 #include "triangle_test.hpp"
 
 namespace raykiln::render {
@@ -11,7 +12,8 @@ namespace {
 static_assert(kLaneStack >= kMaxKdDepth + 2 && kLaneNoHit == kNoHit);
 
 /// The ray with what its lane keeps for it; see shear_ray.
-ShearedRay sheared_ray(const Ray& ray, const LaneShear& shear) {
+ShearedRay made_ready(const WatertightTest& /*test*/, const Ray& ray, const Bounds3f& /*box*/,
+                      const LaneShear& shear) {
   ShearedRay sheared;
   const std::size_t kz = shear.main_axis;
   sheared.o = {ray.o.x, ray.o.y, ray.o.z};
@@ -24,27 +26,36 @@ ShearedRay sheared_ray(const Ray& ray, const LaneShear& shear) {
   return sheared;
 }
 
+FastRay made_ready(const FastTest& /*test*/, const Ray& ray, const Bounds3f& box,
+                   const LaneShear& /*shear*/) {
+  FastRay ready;
+  (void)FastTest::prepare(ray, box, ready);  // a ray in a lane is usable
+  return ready;
+}
+
 /// Calls accept(hit) for the hits among `lanes` of the block until it returns true.
-template <int W, typename Accept>
-void decide_lanes(const ShearedRay& ray, const LeafBlock<W>& block, std::uint32_t lanes,
+template <class Test, int W, typename Accept>
+void decide_lanes(const typename Test::Prepared& ray, const LeafBlock<W>& block, std::uint32_t lanes,
                   Accept&& accept) {
   for (; lanes != 0; lanes &= lanes - 1) {
     Hit hit;
-    if (!test_lane(ray, block, static_cast<std::size_t>(std::countr_zero(lanes)), hit)) continue;
+    if (!Test::lane(ray, block, static_cast<std::size_t>(std::countr_zero(lanes)), hit)) continue;
     if (accept(hit)) return;
   }
 }
 
-template <int W>
+template <class SomeTest, int W>
 struct Closest {
+  using Test = SomeTest;
   const LeafBlock<W>* blocks;
   std::span<const Ray> rays;
   std::span<Hit> hits;
   std::span<const HitOrder> after;
+  const KdTree& tree;
 
-  LaneBest decide(std::size_t ray, const ShearedRay& sheared, std::uint32_t block,
-                  std::uint32_t lanes) {
-    decide_lanes(sheared, blocks[block], lanes, [&](const Hit& hit) {
+  LaneBest decide(std::size_t ray, const typename Test::Prepared& ready,
+                  std::uint32_t block, std::uint32_t lanes) {
+    decide_lanes<Test>(ready, blocks[block], lanes, [&](const Hit& hit) {
       keep(ray, hit);
       return false;
     });
@@ -59,17 +70,18 @@ struct Closest {
   }
 };
 
-template <int W>
+template <class SomeTest, int W>
 struct Any {
+  using Test = SomeTest;
   const LeafBlock<W>* blocks;
   std::span<const Ray> rays;
   std::span<Occlusion> result;
   const KdTree& tree;
 
-  LaneBest decide(std::size_t ray, const ShearedRay& sheared, std::uint32_t block,
-                  std::uint32_t lanes) {
+  LaneBest decide(std::size_t ray, const typename Test::Prepared& ready,
+                  std::uint32_t block, std::uint32_t lanes) {
     LaneBest found{0.0F, kNoHit};
-    decide_lanes(sheared, blocks[block], lanes, [&](const Hit& hit) {
+    decide_lanes<Test>(ready, blocks[block], lanes, [&](const Hit& hit) {
       found = keep(ray, hit);
       return found.id != kNoHit;
     });
@@ -100,7 +112,9 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
   query.decide = [](void* context, std::size_t ray, const LaneShear& shear, std::uint32_t block,
                     std::uint32_t lanes) {
     auto& asked = *static_cast<Search*>(context);
-    return asked.decide(ray, sheared_ray(asked.rays[ray], shear), block, lanes);
+    const auto ready =
+        made_ready(typename Search::Test{}, asked.rays[ray], asked.tree.box, shear);
+    return asked.decide(ray, ready, block, lanes);
   };
   query.keep = [](void* context, std::size_t ray, float t, std::uint32_t id, float u, float v) {
     return static_cast<Search*>(context)->keep(ray, {t, id, u, v});
@@ -115,12 +129,35 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
   counters.exact_tests += counts.exact_tests;
 }
 
+template <class Test>
+void closest(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
+             std::span<const HitOrder> after, TraversalCounters& counters) {
+  with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
+    Closest<Test, W> search{blocks.data(), rays, hits, after, tree};
+    run(kernel, tree, search, counters);
+  });
+}
+
+template <class Test>
+void any(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
+         std::span<Occlusion> result, TraversalCounters& counters) {
+  with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
+    Any<Test, W> search{blocks.data(), rays, result, tree};
+    run(kernel, tree, search, counters);
+  });
+}
+
 }  // namespace
 
 LaneKernel lane_kernel(Traversal traversal, LaneMode mode, int leaf_width) {
 #ifdef RAYKILN_X86_KERNELS
-  if (traversal == Traversal::kAvx2) return avx2_kernel(mode, leaf_width);
-  if (traversal == Traversal::kAvx512) return avx512_kernel(mode, leaf_width);
+  switch (traversal) {
+    case Traversal::kAvx2: return avx2_kernel(mode, leaf_width);
+    case Traversal::kAvx512: return avx512_kernel(mode, leaf_width);
+    case Traversal::kFastAvx2: return fast_avx2_kernel(mode, leaf_width);
+    case Traversal::kFastAvx512: return fast_avx512_kernel(mode, leaf_width);
+    default: break;
+  }
 #else
   (void)traversal, (void)mode, (void)leaf_width;
 #endif
@@ -128,22 +165,19 @@ LaneKernel lane_kernel(Traversal traversal, LaneMode mode, int leaf_width) {
 }
 
 void closest_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
-                           std::span<Hit> hits, std::span<const HitOrder> after,
+                           std::span<Hit> hits, std::span<const HitOrder> after, TriangleTest test,
                            TraversalCounters& counters) {
   std::fill(hits.begin(), hits.end(), Hit{});
-  with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
-    Closest<W> search{blocks.data(), rays, hits, after};
-    run(kernel, tree, search, counters);
-  });
+  const auto search = test == TriangleTest::kFast ? closest<FastTest> : closest<WatertightTest>;
+  search(kernel, tree, rays, hits, after, counters);
 }
 
 void any_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
-                       std::span<Occlusion> result, TraversalCounters& counters) {
+                       std::span<Occlusion> result, TriangleTest test,
+                       TraversalCounters& counters) {
   std::fill(result.begin(), result.end(), Occlusion::kNone);
-  with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
-    Any<W> search{blocks.data(), rays, result, tree};
-    run(kernel, tree, search, counters);
-  });
+  const auto search = test == TriangleTest::kFast ? any<FastTest> : any<WatertightTest>;
+  search(kernel, tree, rays, result, counters);
 }
 
 }  // namespace raykiln::render

@@ -5,6 +5,7 @@
 
 #include "lane_query.hpp"
 #include "raykiln/accel/kdtree_data.hpp"
+#include "raykiln/accel/kernels.hpp"
 
 namespace raykiln::render {
 
@@ -17,8 +18,9 @@ inline constexpr std::size_t kFewRays = 8;
 /// The same as the scalar walk, counts included. The tree is not empty.
 void closest_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
                            std::span<Hit> hits, std::span<const HitOrder> after,
-                           TraversalCounters& counters);
+                           TriangleTest test, TraversalCounters& counters);
 void any_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
-                       std::span<Occlusion> result, TraversalCounters& counters);
+                       std::span<Occlusion> result, TriangleTest test,
+                       TraversalCounters& counters);
 
 }  // namespace raykiln::render

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lane_leaf.hpp"
 #include "lane_query.hpp"
+#include "lane_rays.hpp"
 #include "walk_limits.hpp"
 
 namespace raykiln::render {
@@ -23,8 +23,9 @@ struct ReadyRays : LeafRays<V::kWidth> {
   std::size_t index[kW];      ///< of the ray in each lane
 };
 
-/// kBatches: so many times V::kWidth rays are made ready at once.
-template <class V, std::uint32_t kBatches>
+/// kBatches: so many times V::kWidth rays are made ready at once. Leaf says whether it needs
+/// slopes in double, and larger cells.
+template <class V, class Leaf, std::uint32_t kBatches>
 class RaySource {
  public:
   using F = typename V::F;
@@ -139,9 +140,11 @@ class RaySource {
   // The slopes in double, as shear_ray has them.
   static void keep_shear(Batch& batch, typename V::I axis, F dx, F dy, F dz) {
     V::store(batch.main_axis, axis);
-    V::store_quotients(batch.shear_x, dx, dz);
-    V::store_quotients(batch.shear_y, dy, dz);
-    V::store_quotients(batch.inv_dz, V::set1(1.0F), dz);
+    if constexpr (Leaf::kInDouble) {
+      V::store_quotients(batch.shear_x, dx, dz);
+      V::store_quotients(batch.shear_y, dy, dz);
+      V::store_quotients(batch.inv_dz, V::set1(1.0F), dz);
+    }
   }
 
   // The interval within the root's box; a bit for every ray where it is not empty.
@@ -151,7 +154,12 @@ class RaySource {
       const F box = V::max(V::abs(V::set1(query_.box_lo[k])), V::abs(V::set1(query_.box_hi[k])));
       largest = V::max(largest, V::max(V::abs(V::load(raw_[k])), box));
     }
-    const F slack = V::mul(V::set1(kAbsoluteSlack), largest);
+    F slack = V::mul(V::set1(kAbsoluteSlack), largest);
+    if constexpr (Leaf::kMoreSlack) {
+      const F more = V::mul(V::set1(kFastSlack), reach_of_box());
+      slack = V::add(slack, more);
+      V::store(batch.tolerance, V::mul(V::set1(kFastTolerance), more));
+    }
     F t0 = V::load(raw_[3]);
     F t1 = V::load(raw_[7]);
     V::store(batch.t_min, t0);
@@ -172,6 +180,17 @@ class RaySource {
     V::store(batch.t0, t0);
     V::store(batch.t1, t1);
     return V::bits(V::le(t0, t1));
+  }
+
+  // Of the root's box from the origin: its largest coordinate as seen from there.
+  F reach_of_box() const {
+    F reach = V::set1(0.0F);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const F o = V::load(raw_[k]);
+      reach = V::max(reach, V::max(V::abs(V::sub(V::set1(query_.box_lo[k]), o)),
+                                   V::abs(V::sub(V::set1(query_.box_hi[k]), o))));
+    }
+    return reach;
   }
 
   static F face(F distance, F slack, F side, F inv_d) {

@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lane_leaf.hpp"
 #include "lane_packet.hpp"
 #include "lane_query.hpp"
 #include "lane_setup.hpp"
@@ -42,9 +41,8 @@ struct LaneGroup : LeafRays<V::kWidth> {
   alignas(16) StackEntry stack[kW][kLaneStack];
 };
 
-/// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth. Twice: lanes of two
-/// neighbouring blocks, or B again. D: lanes of the test in double, dividing the others.
-template <class V, class B, class Twice, class D, int kLeafWidth, bool kAnyHit, std::size_t kGroups>
+/// V: lanes of the walk. Leaf: what is done at a leaf, LeafVisit or FastLeafVisit.
+template <class V, class Leaf, bool kAnyHit, std::size_t kGroups>
 class LaneWalk {
  public:
   LaneWalk(const LaneQuery& query, LaneCounts& counts)
@@ -66,11 +64,10 @@ class LaneWalk {
   using I = typename V::I;
   using M = typename V::M;
   using Group = LaneGroup<V>;
-  using Leaf = LeafVisit<V, B, Twice, D, kLeafWidth, kAnyHit>;
   static constexpr std::uint32_t kPackets = 4;
-  using Source = RaySource<V, kPackets>;
+  using Source = RaySource<V, Leaf, kPackets>;
   using Packets = PacketWalk<V, Leaf, kPackets>;
-  static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
+  static constexpr std::size_t kBlockFloats = Leaf::kBlockFloats;
   static constexpr std::uint32_t kEntryBytes = sizeof(StackEntry);
   static constexpr std::uint64_t kStepsWorthIt = 12;  ///< of a ray with others
   static constexpr std::uint64_t kFewNodes = 1024;  ///< of a tree that is best walked by sorted rays
@@ -159,9 +156,12 @@ class LaneWalk {
     group.t_max[lane] = ready.t_max[place];
     group.limit[lane] = ready.limit[place];
     group.known[lane] = ready.known[place];
-    group.shear_x[lane] = ready.shear_x[place];
-    group.shear_y[lane] = ready.shear_y[place];
-    group.inv_dz[lane] = ready.inv_dz[place];
+    if constexpr (Leaf::kMoreSlack) group.tolerance[lane] = ready.tolerance[place];
+    if constexpr (Leaf::kInDouble) {
+      group.shear_x[lane] = ready.shear_x[place];
+      group.shear_y[lane] = ready.shear_y[place];
+      group.inv_dz[lane] = ready.inv_dz[place];
+    }
     group.main_axis[lane] = ready.main_axis[place];
     group.node[lane] = 0;
     if (!ready.begun) return;

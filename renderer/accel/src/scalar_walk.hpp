@@ -23,8 +23,9 @@ namespace raykiln::render {
 
 class ScalarWalk {
  public:
-  /// The ray has passed `prepare`.
-  ScalarWalk(const KdTree& tree, const Ray& ray, TraversalCounters& counters)
+  /// The ray has passed `prepare`. A test may need larger cells than the watertight one.
+  template <class Test>
+  ScalarWalk(const Test& /*test*/, const KdTree& tree, const Ray& ray, TraversalCounters& counters)
       : tree_(tree), counters_(counters) {
     float largest = 0.0F;
     for (int k = 0; k < 3; ++k) {
@@ -36,6 +37,7 @@ class ScalarWalk {
                           std::abs(tree.box.hi[k])});
     }
     slack_ = kAbsoluteSlack * largest;
+    if constexpr (Test::kMoreSlack) slack_ = slack_ + Test::more_slack(tree.box, ray.o);
     t0_ = ray.t_min;
     t1_ = ray.t_max;
     clip_to_root();

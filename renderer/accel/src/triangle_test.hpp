@@ -55,13 +55,18 @@ inline void shear_ray(const Ray& ray, ShearedRay& out) {
 }
 
 /// False when the ray can hit nothing: a number that is not finite, no direction, an empty interval.
-[[nodiscard]] inline bool prepare(const Ray& ray, ShearedRay& out) {
+[[nodiscard]] inline bool is_usable(const Ray& ray) {
   const float longest = std::abs(ray.d[static_cast<int>(main_axis(ray))]);
   // Written so that NaN fails.
   const bool finite = std::abs(ray.d.x) <= kMaxDirection && std::abs(ray.d.y) <= kMaxDirection &&
                       std::abs(ray.d.z) <= kMaxDirection && std::isfinite(ray.o.x) &&
                       std::isfinite(ray.o.y) && std::isfinite(ray.o.z);
-  if (!finite || !(longest >= kMinDirection) || !(ray.t_min <= ray.t_max)) return false;
+  return finite && longest >= kMinDirection && ray.t_min <= ray.t_max;
+}
+
+/// Makes a ray ready; false when it is not usable.
+[[nodiscard]] inline bool prepare(const Ray& ray, ShearedRay& out) {
+  if (!is_usable(ray)) return false;
   shear_ray(ray, out);
   return true;
 }
@@ -72,8 +77,8 @@ struct ShearedTriangle {
   std::array<Real, 3> x, y, z;
 };
 
-template <typename Real, int W>
-[[nodiscard]] inline ShearedTriangle<Real> shear(const ShearedRay& ray, const LeafBlock<W>& block,
+template <typename Real, typename AnyRay, int W>
+[[nodiscard]] inline ShearedTriangle<Real> shear(const AnyRay& ray, const LeafBlock<W>& block,
                                                  std::size_t lane) {
   const std::array<Real, 3> o{static_cast<Real>(ray.o[ray.k[0]]), static_cast<Real>(ray.o[ray.k[1]]),
                               static_cast<Real>(ray.o[ray.k[2]])};
@@ -178,5 +183,25 @@ inline bool test_block(const ShearedRay& ray, const LeafBlock<W>& block, std::ui
 [[nodiscard]] inline bool comes_after(const Hit& a, const HitOrder& b) {
   return a.t > b.t || (a.t == b.t && a.id > b.id);
 }
+
+/// The watertight test as what a search is made of; FastTest of fast_test.hpp is the other one.
+struct WatertightTest {
+  using Prepared = ShearedRay;
+  static constexpr bool kMoreSlack = false;
+
+  [[nodiscard]] static bool prepare(const Ray& ray, const Bounds3f& /*box*/, Prepared& out) {
+    return render::prepare(ray, out);
+  }
+  template <int W, typename Accept>
+  static bool block(const Prepared& ray, const LeafBlock<W>& block, std::uint64_t& decided,
+                    Accept&& accept) {
+    return test_block(ray, block, decided, accept);
+  }
+  template <int W>
+  [[nodiscard]] static bool lane(const Prepared& ray, const LeafBlock<W>& block, std::size_t lane,
+                                 Hit& hit) {
+    return test_lane(ray, block, lane, hit);
+  }
+};
 
 }  // namespace raykiln::render

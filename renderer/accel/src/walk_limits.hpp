@@ -25,4 +25,11 @@ constexpr float kFilterUnderflow = 0x1p-120F;
 constexpr float kVanishingProduct = 0x1p-90F;
 constexpr float kVanishingT = 0x1p-60F;
 
+/// For the fast test cells are larger still, by this much of the reach of the root's box from the
+/// origin: see fast_test.hpp. Weights are formed anew in double where they leave a ray by more than
+/// kFastTolerance of that, or where the determinant has no inverse.
+constexpr float kFastSlack = 0x1p-18F;
+constexpr float kFastTolerance = 0.5F;
+constexpr float kFastLargestDeterminant = 0x1p100F;
+
 }  // namespace raykiln::render

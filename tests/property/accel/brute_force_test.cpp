@@ -82,26 +82,27 @@ TEST_P(BruteForce, ClosestHitsAreEqualBitForBit) {
     if (seed > 4) params.k_i = 4.0;  // a deep tree with many cuts
     const auto tree = build(mesh, params);
     const auto rays = hard_rays(*tree, mesh, 4800, seed);
-    const auto expected = closest(*tree, rays, Traversal::kBruteForce);
-    EXPECT_GT(count_hits(expected), rays.size() / 20) << "the rays must meet something";
-    for (const Traversal walk : walks()) {
-      EXPECT_EQ(count_differences(rays, closest(*tree, rays, walk), expected), 0U)
-          << render::name(walk) << " seed " << seed;
+    for (const render::TriangleTest test : kTriangleTests) {
+      const auto expected = closest(*tree, rays, brute_force(test));
+      EXPECT_GT(count_hits(expected), rays.size() / 20) << "the rays must meet something";
+      for (const Traversal walk : walks(test)) {
+        EXPECT_EQ(count_differences(rays, closest(*tree, rays, walk), expected), 0U)
+            << render::name(walk) << " seed " << seed;
+      }
     }
   }
 }
 
-TEST_P(BruteForce, GoingOnAfterAHitListsTheSameHits) {
-  const TestMesh mesh = GetParam().make(7);
-  const auto tree = build(mesh);
-  const auto rays = hard_rays(*tree, mesh, 1200, 70);
+// Goes on from hit to hit, as a ray does that passes through gaps in surfaces.
+void expect_same_hits_beyond(const render::KdTree& tree, const std::vector<Ray>& rays,
+                             render::TriangleTest test) {
   std::vector<HitOrder> after(rays.size());
   for (int layer = 0; layer < 6; ++layer) {
     std::vector<Hit> walk(rays.size());
     std::vector<Hit> all(rays.size());
-    render::closest_hits(*tree, rays, all, after, Traversal::kBruteForce);
-    for (const Traversal kernel : walks()) {
-      render::closest_hits(*tree, rays, walk, after, kernel);
+    render::closest_hits(tree, rays, all, after, brute_force(test));
+    for (const Traversal kernel : walks(test)) {
+      render::closest_hits(tree, rays, walk, after, kernel);
       ASSERT_EQ(count_differences(rays, walk, all), 0U) << render::name(kernel) << " layer " << layer;
     }
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -114,12 +115,19 @@ TEST_P(BruteForce, GoingOnAfterAHitListsTheSameHits) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (all[i].id != render::kNoHit) shorter[i].t_min = all[i].t;
     }
-    render::closest_hits(*tree, rays, all, after, Traversal::kBruteForce);
-    for (const Traversal kernel : walks()) {
-      render::closest_hits(*tree, shorter, walk, after, kernel);
+    render::closest_hits(tree, rays, all, after, brute_force(test));
+    for (const Traversal kernel : walks(test)) {
+      render::closest_hits(tree, shorter, walk, after, kernel);
       ASSERT_EQ(count_differences(rays, walk, all), 0U) << render::name(kernel) << " layer " << layer;
     }
   }
+}
+
+TEST_P(BruteForce, GoingOnAfterAHitListsTheSameHits) {
+  const TestMesh mesh = GetParam().make(7);
+  const auto tree = build(mesh);
+  const auto rays = hard_rays(*tree, mesh, 1200, 70);
+  for (const render::TriangleTest test : kTriangleTests) expect_same_hits_beyond(*tree, rays, test);
 }
 
 TEST_P(BruteForce, AnyHitsAgreeWithAndWithoutOpaqueTriangles) {
@@ -132,14 +140,16 @@ TEST_P(BruteForce, AnyHitsAgreeWithAndWithoutOpaqueTriangles) {
   const auto rays = hard_rays(*tree, mesh, 4800, 80);
   std::vector<Occlusion> walk(rays.size());
   std::vector<Occlusion> all(rays.size());
-  render::any_hits(*tree, rays, all, Traversal::kBruteForce);
-  for (const Traversal kernel : walks()) {
-    render::any_hits(*tree, rays, walk, kernel);
-    EXPECT_EQ(walk, all) << render::name(kernel);
-  }
-  const auto hits = closest(*tree, rays);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_EQ(all[i] == Occlusion::kNone, hits[i].id == render::kNoHit);
+  for (const render::TriangleTest test : kTriangleTests) {
+    render::any_hits(*tree, rays, all, brute_force(test));
+    for (const Traversal kernel : walks(test)) {
+      render::any_hits(*tree, rays, walk, kernel);
+      EXPECT_EQ(walk, all) << render::name(kernel);
+    }
+    const auto hits = closest(*tree, rays, render::with_test(Traversal::kTree, test));
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(all[i] == Occlusion::kNone, hits[i].id == render::kNoHit);
+    }
   }
 }
 

@@ -47,14 +47,42 @@ Answers ask(const render::KdTree& tree, std::span<const Ray> rays, Traversal wal
 }
 
 void expect_same(const render::KdTree& tree, const std::vector<Ray>& rays) {
-  const Answers scalar = ask(tree, rays, Traversal::kScalar);
-  for (const Traversal walk : walks()) {
-    SCOPED_TRACE(render::name(walk));
-    const Answers other = ask(tree, rays, walk);
-    EXPECT_EQ(count_differences(rays, other.hits, scalar.hits), 0U);
-    EXPECT_EQ(other.occlusion, scalar.occlusion);
-    expect_same_counts(other.closest, scalar.closest);
-    expect_same_counts(other.any, scalar.any);
+  for (const render::TriangleTest test : kTriangleTests) {
+    const Answers scalar = ask(tree, rays, render::with_test(Traversal::kScalar, test));
+    for (const Traversal walk : walks(test)) {
+      SCOPED_TRACE(render::name(walk));
+      const Answers other = ask(tree, rays, walk);
+      EXPECT_EQ(count_differences(rays, other.hits, scalar.hits), 0U);
+      EXPECT_EQ(other.occlusion, scalar.occlusion);
+      expect_same_counts(other.closest, scalar.closest);
+      expect_same_counts(other.any, scalar.any);
+    }
+  }
+}
+
+void expect_brute_force(const render::KdTree& tree, const std::vector<Ray>& rays) {
+  for (const render::TriangleTest test : kTriangleTests) {
+    const auto expected = closest(tree, rays, brute_force(test));
+    for (const Traversal walk : walks(test)) {
+      SCOPED_TRACE(render::name(walk));
+      EXPECT_EQ(count_differences(rays, closest(tree, rays, walk), expected), 0U);
+    }
+  }
+}
+
+// Again, beyond the first hit.
+void expect_brute_force_beyond(const render::KdTree& tree, const std::vector<Ray>& rays,
+                               render::TriangleTest test) {
+  std::vector<render::HitOrder> after;
+  for (const Hit& hit : closest(tree, rays, brute_force(test))) {
+    after.push_back(hit.id == render::kNoHit ? render::HitOrder{} : render::HitOrder{hit.t, hit.id});
+  }
+  std::vector<Hit> beyond(rays.size());
+  std::vector<Hit> found(rays.size());
+  render::closest_hits(tree, rays, beyond, after, brute_force(test));
+  for (const Traversal walk : walks(test)) {
+    render::closest_hits(tree, rays, found, after, walk);
+    EXPECT_EQ(count_differences(rays, found, beyond), 0U) << render::name(walk);
   }
 }
 
@@ -114,19 +142,9 @@ TEST(Kernels, RaysThatGoTogetherAndPart) {
       const auto tree = render::build_kdtree(view, params, runner);
       const auto rays = beams(*tree, ++seed);
       expect_same(*tree, rays);
-      const auto expected = closest(*tree, rays, Traversal::kBruteForce);
-      std::vector<render::HitOrder> after;  // again, beyond the first hit
-      for (const Hit& hit : expected) {
-        after.push_back(hit.id == render::kNoHit ? render::HitOrder{}
-                                                 : render::HitOrder{hit.t, hit.id});
-      }
-      std::vector<Hit> beyond(rays.size());
-      std::vector<Hit> found(rays.size());
-      render::closest_hits(*tree, rays, beyond, after, Traversal::kBruteForce);
-      for (const Traversal walk : walks()) {
-        EXPECT_EQ(count_differences(rays, closest(*tree, rays, walk), expected), 0U);
-        render::closest_hits(*tree, rays, found, after, walk);
-        EXPECT_EQ(count_differences(rays, found, beyond), 0U);
+      expect_brute_force(*tree, rays);
+      for (const render::TriangleTest test : kTriangleTests) {
+        expect_brute_force_beyond(*tree, rays, test);
       }
     }
   }
@@ -162,10 +180,8 @@ TEST(Kernels, EveryScale) {
       }
       SCOPED_TRACE(exponent);
       expect_same(*tree, scaled_rays);
-      const auto expected = closest(*tree, scaled_rays, Traversal::kBruteForce);
-      for (const Traversal walk : walks()) {
-        EXPECT_EQ(count_differences(scaled_rays, closest(*tree, scaled_rays, walk), expected), 0U);
-      }
+      expect_brute_force(*tree, scaled_rays);
+      const auto expected = closest(*tree, scaled_rays);
       for (std::size_t i = 0; i < scaled_rays.size(); ++i) {  // intervals that end at the hit
         if (expected[i].id == render::kNoHit) continue;
         Ray& ray = scaled_rays[i];
@@ -199,27 +215,26 @@ TEST(Kernels, RaysThatAreNotRaysAmongOthers) {
     }
   }
   expect_same(*tree, rays);
-  const auto expected = closest(*tree, rays, Traversal::kBruteForce);
-  for (const Traversal walk : walks()) {
-    EXPECT_EQ(count_differences(rays, closest(*tree, rays, walk), expected), 0U);
-  }
+  expect_brute_force(*tree, rays);
 }
 
 // An interval of one point is met where the hit lies and nowhere beside.
 TEST(Kernels, IntervalsOfOnePoint) {
   for (const TestMesh& mesh : meshes()) {
     const auto tree = build(mesh);
-    auto rays = hard_rays(*tree, mesh, 2000, 45);
-    const auto hits = closest(*tree, rays, Traversal::kScalar);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (hits[i].id == render::kNoHit) continue;
-      rays[i].t_min = rays[i].t_max = i % 4 == 0 ? render::next_up(hits[i].t) : hits[i].t;
-    }
-    expect_same(*tree, rays);
-    const auto found = closest(*tree, rays);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (i % 4 == 0 || hits[i].id == render::kNoHit) continue;
-      ASSERT_TRUE(same_bits(found[i], hits[i])) << "ray " << i;
+    for (const render::TriangleTest test : kTriangleTests) {
+      auto rays = hard_rays(*tree, mesh, 2000, 45);
+      const auto hits = closest(*tree, rays, render::with_test(Traversal::kScalar, test));
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (hits[i].id == render::kNoHit) continue;
+        rays[i].t_min = rays[i].t_max = i % 4 == 0 ? render::next_up(hits[i].t) : hits[i].t;
+      }
+      expect_same(*tree, rays);
+      const auto found = closest(*tree, rays, render::with_test(Traversal::kTree, test));
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (i % 4 == 0 || hits[i].id == render::kNoHit) continue;
+        ASSERT_TRUE(same_bits(found[i], hits[i])) << "ray " << i;
+      }
     }
   }
 }
@@ -230,18 +245,24 @@ TEST(Kernels, ATreeOfNothing) {
 }
 
 TEST(Kernels, HaveNamesAndGiveWay) {
-  for (const Traversal walk : walks()) {
-    EXPECT_EQ(render::traversal_named(render::name(walk)), walk);
-    EXPECT_EQ(render::resolve(walk), walk);
+  for (const render::TriangleTest test : kTriangleTests) {
+    const auto tested = [&](Traversal walk) { return render::with_test(walk, test); };
+    for (const Traversal walk : walks(test)) {
+      EXPECT_EQ(render::traversal_named(render::name(walk)), walk);
+      EXPECT_EQ(render::resolve(walk), walk);
+      EXPECT_EQ(render::test_of(walk), test);
+    }
+    EXPECT_EQ(render::resolve(brute_force(test)), brute_force(test));
+    const Traversal chosen = render::resolve(tested(Traversal::kTree));
+    EXPECT_NE(chosen, tested(Traversal::kTree));
+    EXPECT_EQ(chosen, tested(render::resolve(Traversal::kTree)));
+    EXPECT_TRUE(render::is_available(chosen));
+    for (const Traversal kernel : {tested(Traversal::kAvx2), tested(Traversal::kAvx512)}) {
+      const bool runs = render::is_available(kernel);
+      EXPECT_EQ(render::resolve(kernel), runs ? kernel : tested(Traversal::kScalar));
+    }
   }
-  EXPECT_EQ(render::resolve(Traversal::kBruteForce), Traversal::kBruteForce);
-  EXPECT_NE(render::resolve(Traversal::kTree), Traversal::kTree);
-  EXPECT_TRUE(render::is_available(render::resolve(Traversal::kTree)));
   EXPECT_EQ(render::traversal_named("sse"), std::nullopt);
-  for (const Traversal kernel : {Traversal::kAvx2, Traversal::kAvx512}) {
-    const bool runs = render::is_available(kernel);
-    EXPECT_EQ(render::resolve(kernel), runs ? kernel : Traversal::kScalar);
-  }
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ namespace {
 
 void measure(const std::string& name, const KdTree& tree, const std::vector<Ray>& rays,
              std::vector<Hit>* hits, std::vector<Occlusion>* found) {
-  for (const Traversal kernel : {Traversal::kScalar, Traversal::kAvx2}) {
+  for (const Traversal kernel : {Traversal::kScalar, Traversal::kAvx2, Traversal::kFastScalar,
+                                 Traversal::kFastAvx2}) {
     if (!raykiln::render::is_available(kernel)) continue;
     trace_rays(tree, rays, hits, found, kernel);
     const std::string kernel_name(raykiln::render::name(kernel));

@@ -1,5 +1,5 @@
 # A processor without AVX must never meet an instruction of it by accident.
-# Units are those of ARCHIVE whose names begin with UNITS.
+# Units are those of ARCHIVE whose names begin with UNITS; there are COUNT of them.
 #  1. The units of the kernels define no weak symbol: the linker could take it for the same
 #     function of another unit.
 #  2. No other unit of the archive names a register that AVX brought.
@@ -18,8 +18,8 @@ foreach(member ${members})
     endif()
   endif()
 endforeach()
-if(NOT units EQUAL 2)
-  message(SEND_ERROR "expected two units of kernels in ${ARCHIVE}, found ${units}")
+if(NOT units EQUAL COUNT)
+  message(SEND_ERROR "expected ${COUNT} units of kernels in ${ARCHIVE}, found ${units}")
 endif()
 
 string(REPLACE ";" " " code "${code}")
@@ -34,6 +34,6 @@ foreach(member ${members})
     endif()
   endif()
 endforeach()
-if(NOT wide EQUAL 2)
+if(NOT wide EQUAL COUNT)
   message(SEND_ERROR "the kernels' units should hold instructions of AVX; ${wide} do")
 endif()

@@ -109,11 +109,17 @@ class KdTree;  // see kdtree_data.hpp for the arrays; most callers need only the
 [[nodiscard]] const BuildStats& build_stats(const KdTree& tree);
 [[nodiscard]] Bounds3f bounds(const KdTree& tree);
 
-/// How to find hits; what is found does not depend on it. kTree takes the fastest walk that the
-/// processor can run (kernels.hpp), kScalar one ray at a time: the reference for the kernels below
-/// it, whose results and counters are the same bit for bit. A kernel that the processor cannot run
-/// gives way to kScalar.
-enum class Traversal { kTree, kBruteForce, kScalar, kAvx2, kAvx512 };
+/// How to find hits; what is found does not depend on it but for the triangle test. kTree takes the
+/// fastest walk that the processor can run (kernels.hpp), kScalar one ray at a time: the reference for
+/// the kernels below it, whose results and counters are the same bit for bit. A kernel that the
+/// processor cannot run gives way to kScalar.
+/// The first five test triangles watertightly. The others are the same with the fast test, in float
+/// without a bound on its errors: they agree with each other bit for bit, and may miss a triangle that
+/// is a few roundings wide.
+enum class Traversal {
+  kTree, kBruteForce, kScalar, kAvx2, kAvx512,
+  kFastTree, kFastBruteForce, kFastScalar, kFastAvx2, kFastAvx512
+};
 
 /// For every ray the hit with the lowest (t, id); t, id, u, v do not depend on the tree, its
 /// parameters or the traversal. Feed 1024 rays or more a call. `after` is empty or one a ray.
