@@ -110,7 +110,10 @@ TEST_F(Runner, JobsOfAllBatchesAreBoundedTogether) {
   BatchRequest high = request(2), low = request(2);
   low.reuse = high.reuse = false;
   high.priority = 20;
+  low.items[0].request.stop.samples = 1'000'000;  // has the only place until both are there
   const auto one = submit(low), two = submit(high);
+  const auto first = wait_until((*one)->id, [](const Batch& b) { return !b.items()[0].job.empty(); });
+  EXPECT_TRUE(rig.cancel(first->items()[0].job));
   wait((*one)->id);
   const auto after = wait((*two)->id);
   EXPECT_LT(*after->finished, *wait((*one)->id)->finished) << "the higher priority went first";
@@ -162,9 +165,17 @@ TEST_F(Runner, ReadsWriteNothing) {
 
 TEST_F(Runner, AnEndThatTheStoreDidNotTakeIsStoredLater) {
   limits.store_again = 5ms;
+  rig.scheduler.reset();
+  rig.config.scheduler.max_active_jobs = 1;
+  runner.reset();
+  rig.start();
   open();
+  // It cannot end before the disk is full: another job has the only place.
+  const auto other = rig.submit(small_job(scene, 1'000'000));
   const auto batch = submit(request(1, 64));
+  wait_until((*batch)->id, [](const Batch& b) { return !b.items()[0].job.empty(); });
   records->disk_is_full = true;
+  EXPECT_TRUE(rig.cancel(other->job.id));
   EXPECT_EQ(wait((*batch)->id)->state(), BatchState::kCompleted) << "told all the same";
   const auto stored = [&] {
     const auto all = records->all();
@@ -172,7 +183,7 @@ TEST_F(Runner, AnEndThatTheStoreDidNotTakeIsStoredLater) {
   };
   EXPECT_EQ(stored(), BatchState::kRunning);
   records->disk_is_full = false;
-  for (int i = 0; i < 1000 && stored() == BatchState::kRunning; ++i) std::this_thread::sleep_for(10ms);
+  for (int i = 0; i < 6000 && stored() == BatchState::kRunning; ++i) std::this_thread::sleep_for(10ms);
   EXPECT_EQ(stored(), BatchState::kCompleted);
   const int writes = records->writes;
   std::this_thread::sleep_for(50ms);
@@ -231,7 +242,7 @@ TEST_F(Runner, ItTakesNoClientsPlaceAndNeedsNone) {
 TEST_F(Runner, ACancelOutlivesTheProcess) {
   const auto batch = submit(request(3, 1'000'000));
   ASSERT_TRUE(batch);
-  for (int i = 0; i < 1000 && (*get((*batch)->id))->items()[0].job.empty(); ++i) std::this_thread::sleep_for(5ms);
+  wait_until((*batch)->id, [](const Batch& b) { return !b.items()[0].job.empty(); });
   // As if the process had died after the cancel was stored, and before the jobs knew.
   auto stored = records->all();
   auto dead = decode_batch(stored->front().request, stored->front().state);

@@ -90,7 +90,7 @@ TEST_F(Extend, BeginsAnewWithTheSamePictureWhenTheFilmIsGone) {
 
 // Tiles that time has ended at different samples catch up.
 TEST_F(Extend, OfATimedJobIsWholeAgain) {
-  const JobSnapshot timed = rendered({.samples = 1'000'000, .seconds = 0.2}, 8);
+  const JobSnapshot timed = rendered({.samples = 1'000'000, .seconds = 1.0}, 8);
   std::uint64_t most = static_cast<std::uint64_t>(timed.progress.samples_per_pixel);
   for (const std::uint64_t samples : timed.tile_samples) most = std::max(most, samples);
   most += 100;

@@ -12,7 +12,7 @@ using namespace server;
 
 struct FaultyRig {
   explicit FaultyRig(std::function<Fault(const TileTask&)> choose)
-      : rig(directory.path()), executor(*rig.pool, std::move(choose)) {
+      : rig(directory.path(), 2, {}, short_tasks()), executor(*rig.pool, std::move(choose)) {
     rig.scheduler.reset();
     rig.executor = &executor;
     rig.start();
@@ -25,6 +25,14 @@ struct FaultyRig {
   JobSnapshot run(std::uint64_t samples = 21) {
     id = rig.submit(small_job(scene, samples))->job.id;
     return rig.wait_final(id);
+  }
+  /// Of one tile and block each: many, however fast the machine is.
+  static Config short_tasks() {
+    Config config;
+    config.scheduler.task_seconds_low = 5e-5;
+    config.scheduler.task_seconds_target = 1e-4;
+    config.scheduler.task_seconds_high = 2e-4;
+    return config;
   }
   std::vector<float> picture() { return (*rig.image(id))->image.rgb; }
 
