@@ -25,7 +25,7 @@ def get(api, batch):
 
 
 def events(api, batch, **options):
-    return EventStream(api.daemon.port, f"/v1/batches/{batch}/events", timeout=60 * SLOW, **options)
+    return EventStream(api.daemon.port, f"/v1/batches/{batch}/events", timeout=180 * SLOW, **options)
 
 
 def wait(api, batch):

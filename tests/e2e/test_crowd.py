@@ -72,5 +72,5 @@ def test_kill_and_start_again_under_load(launch):
         jobs.append(cancelled)
         api.daemon.kill()
         api.daemon.start()
-    ends = [api.wait(job, timeout=120)["state"] for job in jobs]
+    ends = [api.wait(job)["state"] for job in jobs]
     assert ends == ["completed", "completed", "completed", "cancelled"] * 3

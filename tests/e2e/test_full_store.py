@@ -4,6 +4,7 @@ import os
 
 from support import scenes
 from support.api import GLB, problem
+from support.patience import eventually
 
 
 def test_a_picture_that_cannot_be_kept_fails_its_job_and_no_other(launch):
@@ -18,7 +19,7 @@ def test_a_picture_that_cannot_be_kept_fails_its_job_and_no_other(launch):
     problem(api.upload(os.urandom(150_000), GLB, expect=(507,)), 507, "storage_full")
     assert api.image(kept, "exr").status_code == 200
     assert api.wait(api.job(scene, width=20, height=20))["state"] == "completed"
-    assert not [name for name in api.daemon.files() if name.startswith(("staging", "scratch"))]
+    eventually(lambda: not [name for name in api.daemon.files() if name.startswith(("staging", "scratch"))])
 
 
 def test_bytes_of_a_deleted_scene_are_given_back(launch):

@@ -160,7 +160,8 @@ def refused(api, data, kind, codes, mention):
     body = problem(answer, answer.status_code, answer.json()["code"])
     assert body["code"] in codes, body
     assert mention in body.get("where", "") + " " + body["detail"], body
-    assert api.daemon.alive() and api.daemon.files() == api.before
+    assert api.daemon.alive()
+    api.daemon.wait_for_files(api.before)
     assert api.json("/v1/scenes")["scenes"] == []
 
 

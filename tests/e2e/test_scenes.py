@@ -4,6 +4,7 @@ import hashlib
 
 from support import scenes
 from support.api import GLB, ZIP, problem
+from support.patience import eventually
 
 
 def multipart_id(files: dict) -> str:
@@ -72,7 +73,7 @@ def test_put_of_other_bytes_keeps_nothing(launch):
     problem(api.put(scenes.box_zip(), digest="0" * 64, expect=(422,)), 422, "digest_mismatch")
     problem(api.get(f"/v1/scenes/{'0' * 64}"), 404, "scene_not_found")
     assert api.json("/v1/scenes")["scenes"] == []
-    assert api.daemon.files() == before
+    api.daemon.wait_for_files(before)
 
 
 def test_a_wrong_id_is_an_error_of_the_parameter(api):
@@ -116,7 +117,7 @@ def test_delete(launch):
     api.delete(scene)
     problem(api.get(f"/v1/scenes/{scene}"), 404, "scene_not_found")
     problem(api.delete(scene, expect=(404,)), 404, "scene_not_found")
-    assert api.daemon.files() == before
+    api.daemon.wait_for_files(before)
     assert api.upload(scenes.box_zip(), expect=(201,)).json()["id"] == scene
 
 
@@ -160,11 +161,7 @@ def test_prepare_builds_without_a_job(launch):
     scene = api.scene(scenes.grid_zip(20))
     answer = api.request("POST", f"/v1/scenes/{scene}/prepare")
     assert answer.status_code == 202 and answer.headers["Location"] == f"/v1/scenes/{scene}"
-    import time
-    deadline = time.monotonic() + 20
-    while api.json(f"/v1/scenes/{scene}")["cache"] != "ready":
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    eventually(lambda: api.json(f"/v1/scenes/{scene}")["cache"] == "ready")
     assert api.wait(api.job(scene))["state"] == "completed"
     assert builds(api) == 1
 

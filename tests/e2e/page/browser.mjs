@@ -6,10 +6,11 @@ import { fileURLToPath } from "node:url";
 const require = createRequire(fileURLToPath(new URL("../../../web/package.json", import.meta.url)));
 const { chromium } = require("playwright-core");
 
-export const kPatienceMs = 30_000 * Number(process.env.RAYKILN_SLOW ?? 1);
+export const kPatienceMs = 60_000 * Number(process.env.RAYKILN_SLOW ?? 1);
 
 export const launch = () => chromium.launch({
   executablePath: process.env.RAYKILN_CHROMIUM ?? "/usr/bin/chromium",
+  timeout: kPatienceMs,
   args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"],
 });
 

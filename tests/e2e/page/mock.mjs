@@ -1,10 +1,11 @@
 // A stand-in for the daemon that speaks proto/openapi.yaml as far as the page
 // uses it. Time is driven by its own clock; odd cases are asked for by name:
-// the job's `name` may hold "fail" or "slow"; other faults are set through the object.
+// the job's `name` may hold "fail" or "slow" (it never ends by itself); other faults are set through the object.
 import { createHash, randomBytes } from "node:crypto";
 import { createReadStream, existsSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join, normalize } from "node:path";
+import { until } from "./browser.mjs";
 import { encode_png, radiance } from "./png.mjs";
 
 const kTypes = { ".html": "text/html; charset=utf-8", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
@@ -40,6 +41,7 @@ export class Mock {
     this.refuse_streams = 0; // next n event streams answer 503
     this.busy_submits = 0; // next n submissions answer 429
     this.image_delay_ms = 0;
+    this.most = 1; // no job gets further: what a test wants to see does not pass while it looks elsewhere
     this.streams = new Set();
     this.server = createServer((request, answer) => void this.route(request, answer).catch((error) => {
       this.problem(answer, 500, "internal", String(error));
@@ -47,9 +49,21 @@ export class Mock {
   }
 
   async listen(port = 0) {
-    await new Promise((resolve) => this.server.listen(port, "127.0.0.1", resolve));
+    await until(() => this.bind(port), (bound) => bound, `port ${port} stays taken`);
     this.timer = setInterval(() => this.tick(), 60);
     return `http://127.0.0.1:${this.server.address().port}`;
+  }
+
+  /** False while the port is taken: a client that tries to reach it may have got it as its own. */
+  bind(port) {
+    return new Promise((resolve, reject) => {
+      const failed = (error) => (error.code === "EADDRINUSE" ? resolve(false) : reject(error));
+      this.server.once("error", failed);
+      this.server.listen(port, "127.0.0.1", () => {
+        this.server.off("error", failed);
+        resolve(true);
+      });
+    });
   }
 
   async close() {
@@ -230,9 +244,10 @@ export class Mock {
   }
 
   advance(job) {
-    const seconds = job.name.includes("slow") || job.progress.samples_target > 10000 ? 30 : this.seconds;
+    const endless = job.name.includes("slow") || job.progress.samples_target > 10000;
     const elapsed = (Date.now() - Date.parse(job.started_at)) / 1000;
-    const fraction = Math.min(1, (elapsed - 0.2) / seconds);
+    const seconds = endless ? 30 : this.seconds;
+    const fraction = Math.min(this.most, endless ? 1 - Math.exp(-elapsed / seconds) : (elapsed - 0.2) / seconds);
     const { samples_target, tiles_total } = job.progress;
     const rays = Math.round(fraction * samples_target * job.request.width * job.request.height * 6.4);
     const first = Math.min(1, fraction * 8);

@@ -4,7 +4,7 @@ import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-const kStartMs = 20_000 * Number(process.env.RAYKILN_SLOW ?? 1);
+const kStartMs = 120_000 * Number(process.env.RAYKILN_SLOW ?? 1);
 
 export class Daemon {
   constructor(program, port = 0) {
@@ -39,7 +39,7 @@ export class Daemon {
   async stop() {
     if (this.process && this.process.exitCode === null) {
       this.process.kill("SIGTERM");
-      const late = setTimeout(() => this.process.kill("SIGKILL"), 15_000);
+      const late = setTimeout(() => this.process.kill("SIGKILL"), kStartMs);
       await this.ended;
       clearTimeout(late);
     }

@@ -20,7 +20,7 @@ class Api:
         self.session.trust_env = False
 
     def request(self, method, path, **options):
-        options.setdefault("timeout", 60 * SLOW)
+        options.setdefault("timeout", 180 * SLOW)
         return self.session.request(method, self.daemon.url + path, **options)
 
     def get(self, path, **options):
@@ -67,17 +67,17 @@ class Api:
         return self._expected(self.request("POST", f"/v1/jobs/{job}/cancel"), expect)
 
     def events(self, job, **options) -> EventStream:
-        options.setdefault("timeout", 60 * SLOW)
+        options.setdefault("timeout", 180 * SLOW)
         return EventStream(self.daemon.port, f"/v1/jobs/{job}/events", **options)
 
-    def wait(self, job, timeout=60.0) -> dict:
+    def wait(self, job, timeout=180.0) -> dict:
         """The final snapshot, as the event stream gives it."""
         with self.events(job, timeout=timeout * SLOW) as stream:
             final = stream.last().data
         assert final["state"] in FINAL, f"the stream ended at {final['state']}"
         return final
 
-    def wait_until(self, job, condition, timeout=30.0) -> dict:
+    def wait_until(self, job, condition, timeout=120.0) -> dict:
         """Polls; fails when the condition is not met in time or a final state comes first."""
         deadline = time.monotonic() + timeout * SLOW
         while True:

@@ -13,11 +13,11 @@ class Answer:
     body: bytes
 
 
-def connect(port: int, timeout: float = 10.0) -> socket.socket:
+def connect(port: int, timeout: float = 120.0) -> socket.socket:
     return socket.create_connection(("127.0.0.1", port), timeout=timeout)
 
 
-def exchange(port: int, request: bytes, timeout: float = 10.0) -> Answer:
+def exchange(port: int, request: bytes, timeout: float = 120.0) -> Answer:
     """Sends the bytes, then reads until the server closes, one whole answer is there, or
     `timeout` passes without a byte (an error: the server must answer or close)."""
     with connect(port, timeout) as connection:

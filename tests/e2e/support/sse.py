@@ -17,7 +17,7 @@ class Event:
 class EventStream:
     """One subscription. `events()` yields until the server closes the stream."""
 
-    def __init__(self, port: int, path: str, last_event_id=None, receive_buffer=None, timeout=30.0):
+    def __init__(self, port: int, path: str, last_event_id=None, receive_buffer=None, timeout=180.0):
         self.connection = socket.socket()
         if receive_buffer:
             self.connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
