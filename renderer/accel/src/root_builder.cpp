@@ -79,6 +79,7 @@ class RootBuilder {
     std::array<SubtreeInput, 2> parts;
     parts[0].runs.resize(groups.size());
     parts[1].runs.resize(groups.size());
+    const std::vector<std::size_t> given = sizes_of(groups);
     std::vector<std::uint64_t> clips(groups.size());
     context_.for_each(groups.size(), [&](std::size_t i) {
       if (!context_.stopped()) {
@@ -94,13 +95,30 @@ class RootBuilder {
     parts[1].budget = shares.right_budget;
     parts[0].share = input.share * shares.left_share;
     parts[1].share = input.share - parts[0].share;
-    live_ += bytes_of(parts[0]) + bytes_of(parts[1]) - n * sizeof(Reference);
-    note_live(4 * kRunSize * sizeof(Reference));  // runs in work stand beside their parts
+    note_parts(given, parts);
     for (SubtreeInput& part : parts) {
       part.depth = input.depth + 1;
       std::erase_if(part.runs, [](const Run& run) { return run.size == 0; });
     }
     return parts;
+  }
+
+  static std::vector<std::size_t> sizes_of(std::span<const std::span<Run>> groups) {
+    std::vector<std::size_t> sizes;
+    for (const std::span<Run>& runs : groups) {
+      sizes.push_back(0);
+      for (const Run& run : runs) sizes.back() += run.size;
+    }
+    return sizes;
+  }
+
+  // A group stands beside its parts until it is cut: those before it are freed, those after it wait.
+  void note_parts(std::span<const std::size_t> given, std::span<const SubtreeInput, 2> parts) {
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      live_ += (parts[0].runs[i].size + parts[1].runs[i].size) * sizeof(Reference);
+      note_live(0);
+      live_ -= given[i] * sizeof(Reference);
+    }
   }
 
   // Neighbouring runs that are small together are split as one, so their number falls with n.
