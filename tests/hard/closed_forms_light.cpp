@@ -32,10 +32,10 @@ TEST(T01, WhiteFurnace) {
           members.note(), "1 for every pixel, 4 sigma", "both");
   Family family(row);
   for (const LightModel& model : kBothModels) {
-    family.named(name(model), furnace(0.5, FurnaceGuest::kNone, model, equally_many(model, 64)));
+    family.named(name(model), furnace(0.5, FurnaceGuest::kNone, model, equally_many(model, of_a_pixel(64))));
     for (const auto guest : {FurnaceGuest::kGlass, FurnaceGuest::kMirror, FurnaceGuest::kLeaf}) {
-      family.member(furnace(0.5, guest, model, 64));
-      family.member(furnace(members.between(0.1, 0.9), guest, model, 32));
+      family.member(furnace(0.5, guest, model, of_a_pixel(64)));
+      family.member(furnace(members.between(0.1, 0.9), guest, model, of_a_pixel(32)));
     }
   }
 }
@@ -142,13 +142,14 @@ TEST(T12, GlassSlab) {
 }
 
 TEST(T13, WindowFromBelow) {
+  const int side = tests::kSanitized ? 64 : 128;
   Members members(5013);
   Row row("T13", "looking up from under a surface of n 1.33 and 1.5, pixel centres; 8 members" + members.note(),
           "radius h tan(asin(1/n)) to 1 pixel, 0 beyond", "both");
   Family family(row);
   for (const LightModel& model : kBothModels) {
-    for (const double n : {1.33, 1.5}) family.named(name(model) + " n " + shown(n), window_from_below(n, model));
-    for (int i = 0; i < (tests::kSanitized ? 1 : 4); ++i) family.member(window_from_below(members.between(1.1, 2.5), model));
+    for (const double n : {1.33, 1.5}) family.named(name(model) + " n " + shown(n), window_from_below(n, model, side));
+    for (int i = 0; i < (tests::kSanitized ? 1 : 4); ++i) family.member(window_from_below(members.between(1.1, 2.5), model, side));
   }
 }
 

@@ -126,7 +126,7 @@ TEST(D06, TouchingDielectricAndDiffuseFaces) {
     mixed += glass == (glass_first ? found.size() : 0U) ? 0U : 1U;
     s.look({2.0, 1.5, 2.0}, {0, 0, 0.4}, {0, 0, 1}, 0.8);
     for (const LightModel& model : {kPhysicalModel, kSeedModel}) {
-      const Measured m = measure(s.scene(), square_settings(16, 48, model), 16);
+      const Measured m = measure(s.scene(), square_settings(16, 48, model), of_a_pixel(16));
       EXPECT_LE(m.mean, 1.0 + 4.0 * m.standard_error + 1e-5) << name(model) << ' ' << glass_first;
       EXPECT_EQ(m.stats.non_finite, 0U);
       brightest = std::max(brightest, m.mean - 4.0 * m.standard_error);

@@ -48,24 +48,24 @@ Outcome slab(double index, double angle_rad, int round_trips, const LightModel& 
   return statistically(measure(s.scene(), settings, samples), slab_transmittance(f, round_trips), 1e-5);
 }
 
-Outcome window_from_below(double index, const LightModel& model) {
-  constexpr int kSide = 128;
+Outcome window_from_below(double index, const LightModel& model, int side) {
   SmallScene s;
   s.level_square(1000.0F, 0.0F, s.material(clear_glass(static_cast<float>(index))));
   s.level_square(1000.0F, -2.0F, s.material(matte(0.0F)));
   s.scene().background = Rgb(1.0F);
   const double truth = std::tan(std::asin(1.0 / index)), half = 1.3 * truth;
   s.look({0, 0, -1}, {0, 0, 0}, {0, 1, 0}, 2.0 * std::atan(half));
-  RenderSettings settings = pixels(kSide, model, 1);
+  RenderSettings settings = pixels(side, model, 1);
   settings.pixel_mode = PixelMode::kCentre;
   const Measured m = measure(s.scene(), settings, 64);
   // Radius of each lit pixel: none beyond the disc by more than a pixel, none dark within it. Near
   // the edge little is let through; 64 samples of a pixel 1.5 pixels inside do not all miss.
-  const double pixel = 2.0 * half / kSide;
+  const double pixel = 2.0 * half / side;
+  const auto pixels_across = static_cast<std::size_t>(side);
   int wrong = 0, lit = 0;
   for (std::size_t i = 0; i < m.pixels.size(); ++i) {
-    const double x = (static_cast<double>(i % kSide) + 0.5) * pixel - half;
-    const double y = (static_cast<double>(i / kSide) + 0.5) * pixel - half;
+    const double x = (static_cast<double>(i % pixels_across) + 0.5) * pixel - half;
+    const double y = (static_cast<double>(i / pixels_across) + 0.5) * pixel - half;
     const double beyond = (std::hypot(x, y) - truth) / pixel;
     const bool bright = m.pixels[i] > 0.0;
     lit += bright ? 1 : 0;

@@ -14,8 +14,8 @@ namespace raykiln::render::selftest {
 [[nodiscard]] Outcome slab(double index, double angle_rad, int round_trips, const LightModel& model,
                            std::uint64_t samples);
 
-/// T13: looking up from under water: the bright disc has radius h tan(asin(1/n)), to a pixel.
-[[nodiscard]] Outcome window_from_below(double index, const LightModel& model);
+/// T13: looking up from under water, `side` pixels across: the bright disc has radius h tan(asin(1/n)), to a pixel.
+[[nodiscard]] Outcome window_from_below(double index, const LightModel& model, int side = 128);
 
 /// Average reflectance of a border from the rare side over directions of a diffuse emitter.
 [[nodiscard]] double average_reflectance(double index, FresnelFormula formula);
