@@ -1,7 +1,17 @@
 #include "prepared_scene.hpp"
+#include "raykiln/render/limited_tree.hpp"
 #include "raykiln/render/prepared_bytes.hpp"
 
 namespace raykiln::render {
+namespace {
+
+// No opacity flags: every triangle blocks shadow rays in the seed's model, and a tree that depends
+// on geometry alone stays valid when a material changes.
+TriangleView triangles_of(const Scene& scene) {
+  return {.positions = scene.mesh.positions, .triangles = scene.mesh.triangles, .opaque = {}};
+}
+
+}  // namespace
 
 std::shared_ptr<const PreparedScene> prepare(std::shared_ptr<const Scene> scene,
                                              std::shared_ptr<const KdTree> tree) {
@@ -12,13 +22,18 @@ std::size_t prepared_bytes(const PreparedScene& scene) {
   return sizeof(scene) + scene.emitters().bytes() + scene.pyramids().bytes();
 }
 
-// No opacity flags: every triangle blocks shadow rays in the seed's model, and a tree that depends
-// on geometry alone stays valid when a material changes.
 std::shared_ptr<const KdTree> build_scene_tree(const Scene& scene, const BuildParams& params,
                                                TaskRunner& runner) {
-  return build_kdtree(
-      {.positions = scene.mesh.positions, .triangles = scene.mesh.triangles, .opaque = {}}, params,
-      runner);
+  return build_kdtree(triangles_of(scene), params, runner);
+}
+
+std::shared_ptr<const KdTree> build_scene_tree(const Scene& scene, const BuildParams& params,
+                                               TaskRunner& runner, const BuildLimits& limits) {
+  return build_kdtree(triangles_of(scene), params, runner, limits);
+}
+
+std::uint64_t least_tree_bytes(const Scene& scene, const BuildParams& params) {
+  return least_bytes(triangles_of(scene), params);
 }
 
 }  // namespace raykiln::render

@@ -195,6 +195,31 @@ void read_crop(FieldReader& reader, const JobLimits& limits, Errors& errors, Job
   request.crop = crop;
 }
 
+void read_tree(FieldReader& reader, const JobLimits& limits, Errors& errors, JobRequest& request) {
+  const json* value = reader.any("tree");
+  if (value == nullptr) return;
+  if (!value->is_object()) {
+    return reader.error("tree", "wrong_type",
+                        "must be an object such as {\"references_per_triangle\": 8, \"max_bytes\": 500000000}");
+  }
+  FieldReader fields(*value, reader.pointer_to("tree"), errors);
+  if (const auto references = fields.number("references_per_triangle")) {
+    request.tree.references_per_triangle = *references;
+    if (!(*references >= 1.0 && *references <= limits.max_tree_references)) {
+      fields.error("references_per_triangle", "out_of_range",
+                   "must be from 1 to " + std::to_string(static_cast<long long>(limits.max_tree_references)));
+    }
+  }
+  request.tree.max_bytes = fields.natural("max_bytes", {1, limits.max_tree_bytes});
+  fields.finish();
+}
+
+nlohmann::ordered_json tree_value(const TreeBudget& tree) {
+  nlohmann::ordered_json value{{"references_per_triangle", tree.references_per_triangle}};
+  if (tree.max_bytes) value["max_bytes"] = *tree.max_bytes;
+  return value;
+}
+
 /// The layers of the list, in the renderer's order; an error at each that is unknown or named before.
 void read_layers(FieldReader& reader, Errors& errors, JobRequest& request) {
   const json* list = reader.any("layers");
@@ -254,6 +279,7 @@ void read_picture(FieldReader& reader, const JobLimits& limits, Errors& errors, 
   read_named(reader, "texture_filter", "exact, footprint", texture_filter_named, request.texture_filter);
   read_named(reader, "sampler", "random, sobol", sampler_named, request.sampler);
   read_effects(reader, errors, request);
+  read_tree(reader, limits, errors, request);
   read_integer(reader, "tile", {1, as_bound(limits.max_tile)}, Need::kOptional, request.tile);
   read_integer(reader, "priority", {1, as_bound(limits.max_priority)}, Need::kOptional, request.priority);
 }
@@ -339,6 +365,7 @@ nlohmann::ordered_json job_request_value(const JobRequest& request) {
           {"sampler", name(request.sampler)},
           {"effects", effects_value(request.effects)},
           {"layers", layer_names(request.layers)},
+          {"tree", tree_value(request.tree)},
           {"tile", request.tile},
           {"priority", request.priority},
           {"adaptive", request.adaptive},

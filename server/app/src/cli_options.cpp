@@ -80,6 +80,16 @@ void add_effects(CLI::App& command, JobRequest& request) {
       "auto: what the scene calls for; all; or without=refraction,... (auto)");
 }
 
+void add_tree(CLI::App& command, TreeBudget& tree) {
+  const JobLimits limits;
+  command.add_option("--tree-references", tree.references_per_triangle,
+                     "most references a triangle in the tree; fewer: less memory, longer rays, the same picture")
+      ->check(CLI::Range(1.0, limits.max_tree_references))
+      ->capture_default_str();
+  command.add_option("--tree-bytes", tree.max_bytes, "most that building the tree may hold, such as 500MB (no limit)")
+      ->transform(CLI::AsSizeValue(true) & CLI::Range(std::uint64_t{1}, limits.max_tree_bytes));
+}
+
 /// What is looked at, and the numbers it is rendered with.
 void add_view(CLI::App& command, CliOptions& options, const char* size) {
   JobRequest& request = options.picture.request;
@@ -161,6 +171,7 @@ void add_picture_options(CLI::App& command, CliOptions& options, const char* wha
             "exact, or footprint: textures as means over what a pixel covers, with less noise and a bias (exact)");
   add_named(command, "--filter", filter_named, request.filter,
             "box, or blackman_harris: softer pixels (box)");
+  add_tree(command, request.tree);
   command.add_option("--tile", request.tile, "edge of a tile in pixels; changes no pixel")
       ->check(CLI::Range(1, limits.max_tile))
       ->capture_default_str();
@@ -327,6 +338,7 @@ void add_commands(CLI::App& app, CliOptions& options) {
   auto* quote = app.add_subcommand("quote", "render a scene on the server for a short time, and print what less error costs");
   add_view(*quote, options, "WxH in pixels (640x480)");
   quote->add_option("SCENE", options.scene, kSceneFiles)->required();
+  add_tree(*quote, options.picture.request.tree);
   quote->add_option("--pilot-seconds", options.pilot_seconds, "time of the pilot")
       ->check(CLI::Range(1e-3, kMostPilotSeconds))
       ->capture_default_str();

@@ -13,6 +13,7 @@
 #include "raykiln/scheduler/layers.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/effects.hpp"
+#include "raykiln/workers/scene_tree.hpp"
 #include "raykiln/workers/tile_counts.hpp"
 
 namespace raykiln::server {
@@ -246,6 +247,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   if (!loaded) return loaded.error();
   const auto settings = render_settings(request, *loaded->scene);
   if (!settings) return settings.error();
+  if (auto fits = check_tree_budget(*loaded->scene, request.tree); !fits) return fits.error();
 
   const auto build_begun = since();
   const auto runner = pool.task_runner(
@@ -253,7 +255,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
         progress({.stage = "building", .fraction = fraction, .elapsed_seconds = since()});
       },
       {});
-  auto tree = render::build_scene_tree(*loaded->scene, {}, *runner);
+  auto tree = build_tree(*loaded->scene, request.tree, *runner);
   const double build_seconds = since() - build_begun;
   const render::BuildStats tree_stats = render::build_stats(*tree);
   const auto prepared = render::prepare(loaded->scene, std::move(tree));
@@ -274,6 +276,7 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
   job.tell(picture.job);
   picture.job.statistics.prepare_seconds = prepare_seconds;
   picture.job.statistics.tree_build_seconds = build_seconds;
+  picture.job.statistics.tree = tree_figures(tree_stats);
   picture.job.elapsed_seconds = since();
   picture.job.warnings = warnings_of(loaded->report);
   picture.job.effects = effect_report(render::effect_plan(*settings, *loaded->scene));

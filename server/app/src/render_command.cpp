@@ -20,6 +20,7 @@ ExitCode complain(const Error& error) {
   std::cerr << " [" << error.code << "]\n";
   if (error.kind == ErrorKind::kInternal) return ExitCode::kFailure;
   if (error.code == "invalid_request") return ExitCode::kUsage;
+  if (error.code == "tree_too_large") return ExitCode::kJobFailed;
   return ExitCode::kScene;
 }
 
@@ -72,6 +73,15 @@ void say_bad_samples(const CliOptions& options, const JobStatistics& statistics)
     std::cerr << "  raykiln replay " << options.scene.string() << ' ' << bad.x << ' ' << bad.y << ' '
               << bad.sample << " (with the options of this picture)\n";
   }
+}
+
+/// Where a budget was asked for: what the tree came to.
+void say_tree(const JobSnapshot& job) {
+  const auto& tree = job.statistics.tree;
+  if (job.request.tree == TreeBudget{} || !tree) return;
+  std::cerr << "tree: " << tree->references << " references, " << tree->bytes << " bytes, " << tree->peak_bytes
+            << " while it was built"
+            << (tree->budget_reached ? "; a bound stopped useful splits, the picture is exact" : "") << '\n';
 }
 
 ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
@@ -156,6 +166,7 @@ ExitCode render_command(const CliOptions& options) {
     }
   }
   if (!options.quiet) std::cerr << accuracy_line(picture->job) << '\n';
+  if (!options.quiet) say_tree(picture->job);
   if (!options.quiet) say_bad_samples(options, picture->job.statistics);
   const auto code = write_pictures(options, *picture, *scene);
   if (options.json && code == ExitCode::kOk) std::cout << job_json(picture->job) << '\n';

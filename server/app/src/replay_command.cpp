@@ -7,6 +7,7 @@
 #include "raykiln/base/ids.hpp"
 #include "raykiln/render/replay.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
+#include "raykiln/workers/scene_tree.hpp"
 #include "load_here.hpp"
 #include "remote.hpp"
 
@@ -37,6 +38,7 @@ void print(const ReplayView& sample, bool as_json) {
 
 ExitCode complain(const Error& error) {
   std::cerr << "raykiln: " << error.message << " [" << error.code << "]\n";
+  if (error.code == "tree_too_large") return ExitCode::kJobFailed;
   return error.code == "invalid_request" ? ExitCode::kUsage : ExitCode::kScene;
 }
 
@@ -82,8 +84,9 @@ ExitCode replay_of_scene(const CliOptions& options) {
   if (at.x >= settings->width || at.y >= settings->height) {
     return complain({ErrorKind::kInvalid, "invalid_request", "the pixel lies outside the picture", ""});
   }
+  if (auto fits = check_tree_budget(*loaded->scene, request.tree); !fits) return complain(fits.error());
   render::SerialTaskRunner runner;
-  const auto scene = render::prepare(loaded->scene, render::build_scene_tree(*loaded->scene, {}, runner));
+  const auto scene = render::prepare(loaded->scene, build_tree(*loaded->scene, request.tree, runner));
   const auto replayed = render::replay_sample(*scene, *settings, at.x, at.y, at.sample);
   ReplayView view{at.x, at.y, at.sample, {replayed.radiance.x, replayed.radiance.y, replayed.radiance.z},
                   replayed.dropped, replayed.truncated, replayed.stats.bounce_rays,

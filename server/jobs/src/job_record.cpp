@@ -74,9 +74,38 @@ void read_lens_and_crop(const RecordReader& r, JobRequest& q) {
                 static_cast<int>(r.integer("crop.full_height", q.height))};
 }
 
+void write_tree_budget(RecordWriter& r, const TreeBudget& tree) {
+  if (tree.references_per_triangle != TreeBudget{}.references_per_triangle) {
+    r.real("tree.references_per_triangle", tree.references_per_triangle);
+  }
+  if (tree.max_bytes) r.natural("tree.max_bytes", *tree.max_bytes);
+}
+
+TreeBudget read_tree_budget(const RecordReader& r) {
+  TreeBudget tree;
+  tree.references_per_triangle = r.real("tree.references_per_triangle", tree.references_per_triangle);
+  if (r.has("tree.max_bytes")) tree.max_bytes = r.natural("tree.max_bytes");
+  return tree;
+}
+
+void write_tree(RecordWriter& r, const std::optional<TreeFigures>& tree) {
+  if (!tree) return;
+  r.natural("stat.tree.references", tree->references);
+  r.natural("stat.tree.bytes", tree->bytes);
+  r.natural("stat.tree.peak_bytes", tree->peak_bytes);
+  r.integer("stat.tree.budget_reached", tree->budget_reached ? 1 : 0);
+}
+
+std::optional<TreeFigures> read_tree(const RecordReader& r) {
+  if (!r.has("stat.tree.references")) return std::nullopt;
+  return TreeFigures{r.natural("stat.tree.references"), r.natural("stat.tree.bytes"),
+                     r.natural("stat.tree.peak_bytes"), r.integer("stat.tree.budget_reached") != 0};
+}
+
 void write_statistics(RecordWriter& r, const JobStatistics& s) {
   r.real("stat.prepare_seconds", s.prepare_seconds);
   if (s.tree_build_seconds) r.real("stat.tree_build_seconds", *s.tree_build_seconds);
+  write_tree(r, s.tree);
   r.real("stat.render_seconds", s.render_seconds);
   r.real("stat.worker_seconds", s.worker_seconds);
   r.real("stat.idle_seconds", s.idle_seconds);
@@ -121,6 +150,7 @@ JobStatistics read_statistics(const RecordReader& r) {
   JobStatistics s;
   s.prepare_seconds = r.real("stat.prepare_seconds");
   if (r.has("stat.tree_build_seconds")) s.tree_build_seconds = r.real("stat.tree_build_seconds");
+  s.tree = read_tree(r);
   s.render_seconds = r.real("stat.render_seconds");
   s.worker_seconds = r.real("stat.worker_seconds");
   s.idle_seconds = r.real("stat.idle_seconds");
@@ -203,6 +233,7 @@ void write_request(RecordWriter& r, const JobRequest& q) {
   if (q.texture_filter != JobRequest{}.texture_filter) r.text("texture_filter", name(q.texture_filter));
   if (!q.layers.empty()) r.text("layers", q.layers);
   write_lens_and_crop(r, q);
+  write_tree_budget(r, q.tree);
   if (q.reuse) r.integer("reuse", 1);
 }
 
@@ -236,6 +267,7 @@ JobRequest read_request(const RecordReader& r) {
   q.texture_filter = texture_filter_named(r.text("texture_filter")).value_or(q.texture_filter);
   q.layers = r.text("layers");
   read_lens_and_crop(r, q);
+  q.tree = read_tree_budget(r);
   q.reuse = r.integer("reuse") != 0;
   return q;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "raykiln/base/ids.hpp"
 #include "raykiln/base/record.hpp"
@@ -139,6 +140,15 @@ std::optional<Error> branches_error(const JobRequest& r, const JobLimits& limits
                                 std::to_string(limits.max_branch_paths));
 }
 
+std::optional<Error> tree_error(const TreeBudget& tree, const JobLimits& limits) {
+  if (!(tree.references_per_triangle >= 1.0 && tree.references_per_triangle <= limits.max_tree_references)) {
+    return wrong("/tree/references_per_triangle",
+                 "must be from 1 to " + std::to_string(static_cast<long long>(limits.max_tree_references)));
+  }
+  if (!tree.max_bytes) return std::nullopt;
+  return outside<std::uint64_t>("/tree/max_bytes", *tree.max_bytes, 1, limits.max_tree_bytes);
+}
+
 bool has_control(const std::string& text) {
   for (const char c : text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) return true;
@@ -231,6 +241,14 @@ std::optional<TextureFilter> texture_filter_named(std::string_view text) {
   return std::nullopt;
 }
 
+std::string tree_budget_text(const TreeBudget& budget) {
+  char references[40];
+  std::snprintf(references, sizeof references, "%.17g", budget.references_per_triangle);
+  std::string text = references;
+  if (budget.max_bytes) text.append(" ").append(std::to_string(*budget.max_bytes));
+  return text;
+}
+
 int depth_limit(const JobRequest& request) {
   constexpr int kRouletteLimit = 1024, kFixedDepth = 8;
   if (request.max_depth) return *request.max_depth;
@@ -252,6 +270,7 @@ Status validate(const JobRequest& request, const JobLimits& limits) {
   if (auto e = tiles_error(request, limits)) return *e;
   if (auto e = stop_error(request, limits)) return *e;
   if (auto e = branches_error(request, limits)) return *e;
+  if (auto e = tree_error(request.tree, limits)) return *e;
   return success();
 }
 

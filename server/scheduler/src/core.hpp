@@ -189,8 +189,8 @@ class Scheduler::Core {
 
   // core_scenes.cpp
   [[nodiscard]] SceneView view(SceneRecord record) const;
-  [[nodiscard]] Status begin_preparing(const std::string& id);
-  [[nodiscard]] std::optional<ReadyScene> scene_in_memory(const std::string& id);
+  [[nodiscard]] Status begin_preparing(const std::string& id, const TreeBudget& budget);
+  [[nodiscard]] std::optional<ReadyScene> scene_in_memory(const std::string& id, const TreeBudget& budget);
   void import_scene(std::shared_ptr<std::unique_ptr<SceneUpload>> upload,
                     const AddSceneOptions& options, const Reply<AddedScene>& reply);
 
@@ -209,7 +209,8 @@ class Scheduler::Core {
   FairShare shares_;
   KeptFilms kept_;
   std::vector<JobImagePtr> images_;  ///< the most recent last
-  std::map<std::string, std::unique_ptr<PrepareTicket>> prepares_;  ///< by scene, asked for by clients
+  /// By scene and budget, asked for by clients.
+  std::map<std::pair<std::string, std::string>, std::unique_ptr<PrepareTicket>> prepares_;
   std::map<int, SteadyTime> worker_free_since_;
   std::size_t active_ = 0;
   std::uint64_t active_film_bytes_ = 0;

@@ -49,6 +49,7 @@ void Scheduler::Core::go_on_from(LiveJob& job, KeptFilm kept) {
   const auto prepared = s.statistics;
   s.statistics = kept.job.statistics;
   s.statistics.tree_build_seconds = prepared.tree_build_seconds;
+  s.statistics.tree = prepared.tree;
   s.statistics.film_bytes = prepared.film_bytes;
   s.curve = std::move(kept.job.curve);
   s.forecasts = std::move(kept.job.forecasts);

@@ -6,6 +6,7 @@
 #include "core.hpp"
 #include "raykiln/scheduler/render_inputs.hpp"
 #include "raykiln/workers/effects.hpp"
+#include "raykiln/workers/scene_tree.hpp"
 #include "raykiln/workers/tile_counts.hpp"
 
 namespace raykiln::server {
@@ -105,7 +106,7 @@ void Scheduler::Core::start_preparing(LiveJob& job) {
   job.snapshot.prepare = {PrepareStage::kWaiting, 0.0};
   transition(job, JobEvent::kStart);
   job.ticket = parts_.cache.prepare(
-      job.snapshot.request.scene,
+      job.snapshot.request.scene, job.snapshot.request.tree,
       [this, strand = strand_, id](PrepareProgress progress) {
         post_on(strand, this, [this, id, progress] {
           LiveJob* waiting = find(id);
@@ -150,6 +151,7 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   warn_of_picture(*settings, *scene.scene, scene.tree.stats, s.warnings);
   look_for_missing_light(s.id, *settings, scene.prepared);
   s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
+  s.statistics.tree = tree_figures(scene.tree.stats);
   job.scene = std::move(scene);
   job.blocks = render::blocks_for(s.request.stop.samples);
   auto earlier = s.continues.empty() ? std::nullopt : kept_.take(s.continues);

@@ -85,23 +85,24 @@ void Scheduler::Core::delete_scene(const std::string& id, const Reply<std::monos
                          entry.first});
     }
   }
-  prepares_.erase(id);
+  std::erase_if(prepares_, [&](const auto& entry) { return entry.first.first == id; });
   auto deleted = parts_.store.delete_scene(id);
   if (deleted) parts_.cache.forget(id);
   reply(std::move(deleted));
 }
 
 /// Makes scene and tree ready, if they are not and nobody is at it for a client yet.
-Status Scheduler::Core::begin_preparing(const std::string& id) {
+Status Scheduler::Core::begin_preparing(const std::string& id, const TreeBudget& budget) {
   if (!accepting_) {
     return Error{ErrorKind::kUnavailable, "shutting_down", "the server is stopping", "", 5};
   }
-  if (parts_.cache.state(id) == CacheState::kReady || prepares_.contains(id)) return success();
+  const auto key = std::pair(id, tree_budget_text(budget));
+  if (parts_.cache.state(id, budget) == CacheState::kReady || prepares_.contains(key)) return success();
   if (prepares_.size() >= config_.workers.max_pending_imports) {
     return Error{ErrorKind::kTooMany, "too_many_uploads", "too many scenes are being prepared", "", 5};
   }
-  prepares_[id] = parts_.cache.prepare(id, {}, [this, strand = strand_, id](const Result<ReadyScene>&) {
-    post_on(strand, this, [this, id] { prepares_.erase(id); });
+  prepares_[key] = parts_.cache.prepare(id, budget, {}, [this, strand = strand_, key](const Result<ReadyScene>&) {
+    post_on(strand, this, [this, key] { prepares_.erase(key); });
   });
   return success();
 }
@@ -109,20 +110,20 @@ Status Scheduler::Core::begin_preparing(const std::string& id) {
 void Scheduler::Core::prepare_scene(const std::string& id, const Reply<SceneView>& reply) {
   auto record = parts_.store.scene(id);
   if (!record) return reply(record.error());
-  if (auto begun = begin_preparing(id); !begun) return reply(begun.error());
+  if (auto begun = begin_preparing(id, {}); !begun) return reply(begun.error());
   reply(view(std::move(*record)));
 }
 
 /// What the cache has, without waiting for anything.
-std::optional<ReadyScene> Scheduler::Core::scene_in_memory(const std::string& id) {
-  if (parts_.cache.state(id) != CacheState::kReady) return std::nullopt;
+std::optional<ReadyScene> Scheduler::Core::scene_in_memory(const std::string& id, const TreeBudget& budget) {
+  if (parts_.cache.state(id, budget) != CacheState::kReady) return std::nullopt;
   // The scene may be dropped in between: then the answer would come later, to nobody.
   struct Answer {
     std::mutex mutex;
     std::optional<ReadyScene> scene;
   };
   const auto answer = std::make_shared<Answer>();
-  const auto ticket = parts_.cache.prepare(id, {}, [answer](Result<ReadyScene> ready) {
+  const auto ticket = parts_.cache.prepare(id, budget, {}, [answer](Result<ReadyScene> ready) {
     const std::scoped_lock lock(answer->mutex);
     if (ready) answer->scene = std::move(*ready);
   });
@@ -136,10 +137,10 @@ void Scheduler::Core::replay_inputs(const JobId& id, const Reply<ReplayInputs>& 
   const JobRequest& request = job->request;
   LiveJob* live = find(id);
   auto scene = live != nullptr && live->scene.prepared ? std::optional(live->scene)
-                                                       : scene_in_memory(request.scene);
+                                                       : scene_in_memory(request.scene, request.tree);
   if (!scene) {
     if (auto record = parts_.store.scene(request.scene); !record) return reply(record.error());
-    if (auto begun = begin_preparing(request.scene); !begun) return reply(begun.error());
+    if (auto begun = begin_preparing(request.scene, request.tree); !begun) return reply(begun.error());
     return reply(Error{ErrorKind::kUnavailable, "scene_not_ready",
                        "scene and tree of the job are being made ready", request.scene, 1});
   }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace raykiln::server {
 
@@ -16,13 +18,14 @@ class ByteLru {
  public:
   explicit ByteLru(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// `beside`: an entry that this one refers to and that is not to go before it; "" for none.
-  void insert(const std::string& key, Value value, std::uint64_t bytes, const std::string& beside = "") {
+  /// `beside`: entries that this one refers to and that are not to go before it.
+  void insert(const std::string& key, Value value, std::uint64_t bytes,
+              std::initializer_list<std::string> beside = {}) {
     erase(key);
     entries_.insert_or_assign(key, Entry{std::move(value), bytes, ++clock_});
     bytes_ += bytes;
-    (void)use(beside);
-    const std::size_t stay = entries_.contains(beside) ? 2 : 1;
+    std::size_t stay = 1;
+    for (const std::string& other : beside) stay += use(other) ? 1U : 0U;
     while (bytes_ > max_bytes_ && entries_.size() > stay) erase(oldest());
   }
 
@@ -32,6 +35,15 @@ class ByteLru {
     if (found == entries_.end()) return std::nullopt;
     found->second.stamp = ++clock_;
     return found->second.value;
+  }
+
+  /// Keys of all entries that begin so.
+  [[nodiscard]] std::vector<std::string> keys_with(const std::string& prefix) const {
+    std::vector<std::string> keys;
+    for (auto it = entries_.lower_bound(prefix); it != entries_.end() && it->first.starts_with(prefix); ++it) {
+      keys.push_back(it->first);
+    }
+    return keys;
   }
 
   [[nodiscard]] bool contains(const std::string& key) const { return entries_.contains(key); }

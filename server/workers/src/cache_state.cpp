@@ -8,11 +8,10 @@
 #include "raykiln/render/prepared_bytes.hpp"
 #include "raykiln/scene/environment_map.hpp"
 #include "raykiln/scene/surface_textures.hpp"
+#include "raykiln/workers/scene_tree.hpp"
 
 namespace raykiln::server {
 namespace {
-
-using render::BuildParams;
 
 /// The map and the table that is made of it for sampling.
 std::uint64_t environment_bytes(const render::Scene& scene) {
@@ -49,14 +48,16 @@ std::uint64_t bytes_of(const render::Scene& scene) {
          texture_bytes(scene);
 }
 
-std::string tree_key(const render::Scene& scene, const BuildParams& p) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%d %a %a %a %a %d %d", render::kKdTreeVersion, p.k_t, p.k_i,
-                p.empty_factor, p.max_duplication, p.max_depth, p.leaf_width);
+std::string tree_key(const render::Scene& scene, const TreeBudget& budget) {
+  const render::BuildParams p = build_params(budget);
+  char text[200];
+  std::snprintf(text, sizeof text, "%d %a %a %a %a %d %d %llu", render::kKdTreeVersion, p.k_t, p.k_i,
+                p.empty_factor, p.max_duplication, p.max_depth, p.leaf_width,
+                static_cast<unsigned long long>(budget.max_bytes.value_or(0)));
   return "tree " + geometry_digest(scene) + ' ' + text;
 }
 
-std::string scene_key(const std::string& scene_id) { return "scene " + scene_id; }
+std::string import_key(const std::string& scene_id) { return scene_key(scene_id) + "imported"; }
 
 Error stopped() { return {ErrorKind::kUnavailable, "import_stopped", "nobody waits any more", ""}; }
 
@@ -73,6 +74,13 @@ class Ticket final : public PrepareTicket {
 
 }  // namespace
 
+std::string scene_key(const std::string& scene_id) { return "scene " + scene_id + ' '; }
+
+std::string ready_keys(const std::string& scene_id) { return scene_key(scene_id) + "with "; }
+std::string ready_key(const std::string& scene_id, const TreeBudget& budget) {
+  return ready_keys(scene_id) + tree_budget_text(budget) + ';';
+}
+
 SceneCache::State::State(const WorkerSettings& settings, Parts parts)
     : kept(settings.scene_cache_bytes),
       parts_(std::move(parts)),
@@ -80,11 +88,7 @@ SceneCache::State::State(const WorkerSettings& settings, Parts parts)
       imports_(parts_.metrics.counter("raykiln_scene_imports_total", "scenes read for rendering")),
       hits_(parts_.metrics.counter("raykiln_scene_cache_hits_total", "scenes found ready")),
       bytes_(parts_.metrics.gauge("raykiln_scene_cache_bytes", "scenes and trees kept in memory")) {
-  if (!parts_.build) {
-    parts_.build = [](const render::Scene& scene, render::TaskRunner& runner) {
-      return render::build_scene_tree(scene, BuildParams{}, runner);
-    };
-  }
+  if (!parts_.build) parts_.build = build_tree;
   for (int i = 0; i < std::max(1, settings.preparing_threads); ++i) {
     threads_.emplace_back([this] { work(); });
   }
@@ -101,31 +105,44 @@ void SceneCache::State::stop() {
   for (auto& thread : threads_) thread.join();
 }
 
-std::optional<ReadyScene> SceneCache::State::ready(const std::string& scene_id) {
-  auto found = kept.use(scene_key(scene_id));
+CacheState SceneCache::State::state(const std::string& begin_of_keys) const {
+  if (!kept.keys_with(begin_of_keys).empty()) return CacheState::kReady;
+  const auto flight = flights.lower_bound(begin_of_keys);
+  const bool under_way = flight != flights.end() && flight->first.starts_with(begin_of_keys);
+  return under_way ? CacheState::kBuilding : CacheState::kAbsent;
+}
+
+void SceneCache::State::forget(const std::string& scene_id) {
+  for (const std::string& key : kept.keys_with(scene_key(scene_id))) kept.erase(key);
+  reports.erase(scene_id);
+}
+
+std::optional<ReadyScene> SceneCache::State::ready(const std::string& scene_id, const TreeBudget& budget) {
+  auto found = kept.use(ready_key(scene_id, budget));
   if (!found) return std::nullopt;
   ReadyScene scene = std::get<ReadyScene>(*found);
-  // The tree after the scene: it is dropped last, so that its bytes stay counted while a scene that
-  // is kept refers to it.
+  // Tree and import after the scene: they are dropped last, so that their bytes stay counted while a
+  // scene that is kept refers to them.
   (void)kept.use(scene.tree_key);
+  (void)kept.use(import_key(scene_id));
   scene.built_now = false;
   return scene;
 }
 
 std::unique_ptr<PrepareTicket> SceneCache::State::prepare(const std::shared_ptr<State>& self,
                                                           const std::string& scene_id,
-                                                          Flight::Waiter waiter) {
+                                                          const TreeBudget& budget, Flight::Waiter waiter) {
   std::unique_lock lock(mutex);
-  if (auto scene = ready(scene_id)) {
+  if (auto scene = ready(scene_id, budget)) {
     lock.unlock();
     hits_.add();
     waiter.done(std::move(*scene));
     return std::make_unique<Ticket>([] {});
   }
-  auto& flight = flights[scene_id];
+  auto& flight = flights[ready_key(scene_id, budget)];
   auto seat = flight ? flight->join(waiter) : std::nullopt;
   if (!seat) {
-    flight = std::make_shared<Flight>(scene_id);
+    flight = std::make_shared<Flight>(scene_id, budget);
     seat = flight->join(waiter);
     queue_.push_back(flight);
     wake_.notify_one();
@@ -136,10 +153,14 @@ std::unique_ptr<PrepareTicket> SceneCache::State::prepare(const std::shared_ptr<
 
 void SceneCache::State::drop(const std::shared_ptr<Flight>& flight, std::uint64_t waiter) {
   if (!flight->leave(waiter)) return;
-  const std::scoped_lock lock(mutex);
-  const auto found = flights.find(flight->scene_id);
-  if (found != flights.end() && found->second == flight) flights.erase(found);
+  end(flight);
   tree_ended_.notify_all();  // it may be waiting for another's build
+}
+
+void SceneCache::State::end(const std::shared_ptr<Flight>& flight) {
+  const std::scoped_lock lock(mutex);
+  const auto found = flights.find(ready_key(flight->scene_id, flight->budget));
+  if (found != flights.end() && found->second == flight) flights.erase(found);
 }
 
 void SceneCache::State::work() {
@@ -153,11 +174,7 @@ void SceneCache::State::work() {
       queue_.pop_front();
     }
     const Result<ReadyScene> result = flight->wanted() ? guarded_fly(flight) : stopped();
-    {
-      const std::scoped_lock lock(mutex);
-      const auto found = flights.find(flight->scene_id);
-      if (found != flights.end() && found->second == flight) flights.erase(found);
-    }
+    end(flight);
     flight->finish(result);
   }
 }
@@ -173,34 +190,60 @@ Result<ReadyScene> SceneCache::State::guarded_fly(const std::shared_ptr<Flight>&
   }
 }
 
-Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight) {
+Result<SceneCache::State::ImportedScene> SceneCache::State::imported(const Flight& flight) {
+  const std::string& id = flight.scene_id;
   {
     const std::scoped_lock lock(mutex);
-    if (auto scene = ready(flight->scene_id)) return std::move(*scene);
+    if (auto found = kept.use(import_key(id))) return std::get<ImportedScene>(*found);
   }
-  flight->report({PrepareStage::kImporting, 0.0});
-  auto record = parts_.store.scene(flight->scene_id);
+  auto record = parts_.store.scene(id);
   if (!record) return record.error();
-  auto files = parts_.store.scene_files(flight->scene_id);
+  auto files = parts_.store.scene_files(id);
   if (!files) return files.error();
   imports_.add();
-  auto loaded = parts_.intake.load(record->kind, *files, MissingTextures::kLeaveOut, flight->token());
+  auto loaded = parts_.intake.load(record->kind, *files, MissingTextures::kLeaveOut, flight.token());
   if (!loaded) return loaded.error();
-  const std::string key = tree_key(*loaded->scene, BuildParams{});
-  auto tree = obtain_tree(flight, *loaded->scene, key);
-  if (!tree) return tree.error();
-  ReadyScene scene{loaded->scene, render::prepare(loaded->scene, tree->tree.tree),
-                   tree->tree.report, tree->built_now, key};
   const std::scoped_lock lock(mutex);
-  // Another scene may have driven the tree out meanwhile: what is kept is counted with all it holds.
-  if (!kept.contains(key)) keep(key, tree->tree, tree->tree.report.stats.bytes);
-  keep(scene_key(flight->scene_id), scene, bytes_of(*scene.scene) + render::prepared_bytes(*scene.prepared), key);
-  reports[flight->scene_id] = scene.tree;
+  return keep_imported(id, loaded->scene, "");
+}
+
+/// The import that is kept: this one, or another's that came before, so that one is held and counted.
+/// Precondition: the mutex is held.
+SceneCache::State::ImportedScene SceneCache::State::keep_imported(const std::string& scene_id,
+                                                                  ImportedScene scene,
+                                                                  const std::string& beside) {
+  const std::string key = import_key(scene_id);
+  if (auto found = kept.use(key)) return std::get<ImportedScene>(*found);
+  keep(key, scene, bytes_of(*scene), {beside});
+  return scene;
+}
+
+Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight) {
+  const std::string& id = flight->scene_id;
+  {
+    const std::scoped_lock lock(mutex);
+    if (auto scene = ready(id, flight->budget)) return std::move(*scene);
+  }
+  flight->report({PrepareStage::kImporting, 0.0});
+  auto source = imported(*flight);
+  if (!source) return source.error();
+  if (auto fits = check_tree_budget(**source, flight->budget); !fits) return fits.error();
+  const std::string key = tree_key(**source, flight->budget);
+  auto tree = obtain_tree(flight, **source, key);
+  if (!tree) return tree.error();
+  ReadyScene scene{*source, render::prepare(*source, tree->tree.tree), tree->tree.report, tree->built_now, key};
+  const std::scoped_lock lock(mutex);
+  // Another scene may have driven import and tree out meanwhile: what is kept is counted with all it holds.
+  if (!kept.contains(key)) keep(key, tree->tree, tree->tree.report.stats.bytes, {import_key(id)});
+  std::uint64_t bytes = render::prepared_bytes(*scene.prepared);
+  if (keep_imported(id, *source, key) != *source) bytes += bytes_of(**source);
+  keep(ready_key(id, flight->budget), scene, bytes, {key, import_key(id)});
+  reports[id] = scene.tree;
   return scene;
 }
 
 void SceneCache::State::keep(const std::string& key, Kept value, std::uint64_t bytes,
-                             const std::string& beside) {
+                             std::initializer_list<std::string> beside) {
   kept.insert(key, std::move(value), bytes, beside);
   bytes_.set(static_cast<double>(kept.bytes()));
 }
@@ -223,13 +266,13 @@ void SceneCache::State::report(const TreeFlight& tree_flight, double fraction) c
 }
 
 std::optional<BuiltTree> SceneCache::State::build(TreeFlight& tree_flight,
-                                                  const render::Scene& scene) {
+                                                  const render::Scene& scene, const TreeBudget& budget) {
   const auto runner = parts_.pool.task_runner(
       [&](double fraction) { report(tree_flight, fraction); },
       [&] { return !is_wanted(tree_flight); });
   report(tree_flight, 0.0);
   const SteadyTime begin = parts_.clock.steady();
-  auto tree = parts_.build(scene, *runner);
+  auto tree = parts_.build(scene, budget, *runner);
   if (!tree) return std::nullopt;
   builds_.add();
   const double seconds = seconds_between(begin, parts_.clock.steady());
@@ -259,7 +302,7 @@ Result<SceneCache::State::NewTree> SceneCache::State::obtain_tree(
     std::optional<BuiltTree> built;
     std::exception_ptr fault;
     try {
-      built = build(*mine, scene);
+      built = build(*mine, scene, flight->budget);
     } catch (...) {
       fault = std::current_exception();
     }

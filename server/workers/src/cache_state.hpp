@@ -28,22 +28,32 @@ struct TreeFlight {
   bool ended = false;
 };
 
+/// How the keys begin of all that is kept of a scene, and of what is ready or under way with some budget.
+[[nodiscard]] std::string scene_key(const std::string& scene_id);
+[[nodiscard]] std::string ready_keys(const std::string& scene_id);
+[[nodiscard]] std::string ready_key(const std::string& scene_id, const TreeBudget& budget);
+
 struct SceneCache::State {
  public:
   State(const WorkerSettings& settings, Parts parts);
 
   [[nodiscard]] std::unique_ptr<PrepareTicket> prepare(
-      const std::shared_ptr<State>& self, const std::string& scene_id, Flight::Waiter waiter);
+      const std::shared_ptr<State>& self, const std::string& scene_id, const TreeBudget& budget,
+      Flight::Waiter waiter);
   void drop(const std::shared_ptr<Flight>& flight, std::uint64_t waiter);
   void stop();
+  /// Preconditions of these: the mutex is held.
+  [[nodiscard]] CacheState state(const std::string& begin_of_keys) const;
+  void forget(const std::string& scene_id);
 
   /// Work of one preparing thread.
   void work();
 
   mutable std::mutex mutex;
-  std::map<std::string, std::shared_ptr<Flight>> flights;  ///< newest of each scene
+  std::map<std::string, std::shared_ptr<Flight>> flights;  ///< newest of each ready_key()
   std::map<std::string, TreeReport> reports;               ///< by scene
-  using Kept = std::variant<ReadyScene, BuiltTree>;
+  using ImportedScene = std::shared_ptr<const render::Scene>;
+  using Kept = std::variant<ReadyScene, BuiltTree, ImportedScene>;
   ByteLru<Kept> kept;
 
  private:
@@ -53,13 +63,19 @@ struct SceneCache::State {
   };
   [[nodiscard]] Result<ReadyScene> fly(const std::shared_ptr<Flight>& flight);
   [[nodiscard]] Result<ReadyScene> guarded_fly(const std::shared_ptr<Flight>& flight);
-  [[nodiscard]] std::optional<ReadyScene> ready(const std::string& scene_id);
+  [[nodiscard]] std::optional<ReadyScene> ready(const std::string& scene_id, const TreeBudget& budget);
+  [[nodiscard]] Result<ImportedScene> imported(const Flight& flight);
+  [[nodiscard]] ImportedScene keep_imported(const std::string& scene_id, ImportedScene scene,
+                                            const std::string& beside);
+  void end(const std::shared_ptr<Flight>& flight);
   [[nodiscard]] Result<NewTree> obtain_tree(const std::shared_ptr<Flight>& flight,
                                             const render::Scene& scene, const std::string& key);
-  [[nodiscard]] std::optional<BuiltTree> build(TreeFlight& tree_flight, const render::Scene& scene);
+  [[nodiscard]] std::optional<BuiltTree> build(TreeFlight& tree_flight, const render::Scene& scene,
+                                               const TreeBudget& budget);
   [[nodiscard]] bool is_wanted(const TreeFlight& tree_flight) const;
   void report(const TreeFlight& tree_flight, double fraction) const;
-  void keep(const std::string& key, Kept value, std::uint64_t bytes, const std::string& beside = "");
+  void keep(const std::string& key, Kept value, std::uint64_t bytes,
+            std::initializer_list<std::string> beside = {});
 
   Parts parts_;
   Counter& builds_;

@@ -17,7 +17,7 @@ namespace raykiln::server {
 /// Safe to use from any thread. Callbacks are called without a lock.
 class Flight {
  public:
-  explicit Flight(std::string scene) : scene_id(std::move(scene)) {}
+  Flight(std::string scene, const TreeBudget& tree) : scene_id(std::move(scene)), budget(tree) {}
 
   struct Waiter {
     std::function<void(PrepareProgress)> progress;
@@ -38,6 +38,7 @@ class Flight {
   void stop() { stop_.request_stop(); }
 
   const std::string scene_id;
+  const TreeBudget budget;
 
  private:
   mutable std::mutex mutex_;

@@ -17,22 +17,28 @@ SceneCache::SceneCache(const WorkerSettings& settings, Parts parts)
     : state_(std::make_shared<State>(settings, std::move(parts))) {}
 SceneCache::~SceneCache() { state_->stop(); }
 
-std::unique_ptr<PrepareTicket> SceneCache::prepare(const std::string& scene_id,
+std::unique_ptr<PrepareTicket> SceneCache::prepare(const std::string& scene_id, const TreeBudget& budget,
                                                    std::function<void(PrepareProgress)> progress,
                                                    std::function<void(Result<ReadyScene>)> done) {
-  return state_->prepare(state_, scene_id, {std::move(progress), std::move(done)});
+  return state_->prepare(state_, scene_id, budget, {std::move(progress), std::move(done)});
+}
+
+CacheState SceneCache::state(const std::string& scene_id, const TreeBudget& budget) const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->state(ready_key(scene_id, budget));
 }
 
 CacheState SceneCache::state(const std::string& scene_id) const {
   const std::scoped_lock lock(state_->mutex);
-  if (state_->kept.contains("scene " + scene_id)) return CacheState::kReady;
-  return state_->flights.contains(scene_id) ? CacheState::kBuilding : CacheState::kAbsent;
+  return state_->state(ready_keys(scene_id));
 }
 
 PrepareProgress SceneCache::progress(const std::string& scene_id) const {
   const std::scoped_lock lock(state_->mutex);
-  const auto found = state_->flights.find(scene_id);
-  return found == state_->flights.end() ? PrepareProgress{} : found->second->progress();
+  const std::string keys = ready_keys(scene_id);
+  const auto found = state_->flights.lower_bound(keys);
+  const bool under_way = found != state_->flights.end() && found->first.starts_with(keys);
+  return under_way ? found->second->progress() : PrepareProgress{};
 }
 
 std::optional<TreeReport> SceneCache::tree_report(const std::string& scene_id) const {
@@ -44,8 +50,7 @@ std::optional<TreeReport> SceneCache::tree_report(const std::string& scene_id) c
 
 void SceneCache::forget(const std::string& scene_id) {
   const std::scoped_lock lock(state_->mutex);
-  state_->kept.erase("scene " + scene_id);
-  state_->reports.erase(scene_id);
+  state_->forget(scene_id);
 }
 
 std::uint64_t SceneCache::bytes() const {

@@ -57,6 +57,8 @@ TEST(JobRequestJson, ComesBackAsItWent) {
   request.sampler = Sampler::kSobol;
   request.emitter_choice = EmitterChoice::kTree;
   request.texture_filter = TextureFilter::kFootprint;
+  request.tree.references_per_triangle = 1.1;
+  request.tree.max_bytes = 9007199254740991U;
   request.lens = Lens{0.25, 3.0};
   request.crop = Crop{1, 2, 16384, 16384};
   request.effects = "without=refraction,roulette";
@@ -118,6 +120,16 @@ TEST(JobRequestJson, NamesEveryWrongField) {
   check("/crop", {{"x", 0}, {"y", 0}, {"full_width", 640}}, "/crop/full_height missing_field");
   check("/camera", {{"eye", {0, 0, 0}}, {"look_at", {0, 0, 1}}, {"fov_deg", 40}, {"view_height", 1}},
         "/camera/view_height invalid_value");
+  check("/tree", 4, "/tree wrong_type");
+  check("/tree", {{"references", 4}}, "/tree/references unknown_field");
+  check("/tree", {{"references_per_triangle", 0.5}}, "/tree/references_per_triangle out_of_range");
+  check("/tree", {{"references_per_triangle", 65}}, "/tree/references_per_triangle out_of_range");
+  check("/tree", {{"references_per_triangle", "4"}}, "/tree/references_per_triangle wrong_type");
+  check("/tree", {{"max_bytes", 0}}, "/tree/max_bytes out_of_range");
+  check("/tree", {{"max_bytes", -5}}, "/tree/max_bytes out_of_range");
+  check("/tree", {{"max_bytes", 1.5}}, "/tree/max_bytes wrong_type");
+  check("/tree", {{"max_bytes", 9007199254740992U}}, "/tree/max_bytes out_of_range");
+  check("/tree", {{"max_bytes", nullptr}}, "/tree/max_bytes wrong_type");
   check("/layers", "albedo", "/layers wrong_type");
   check("/layers", {"albedo", "beauty"}, "/layers/1 invalid_value");
   check("/layers", {"albedo", 7}, "/layers/1 invalid_value");
@@ -253,6 +265,16 @@ TEST(JobJson, FollowsTheContract) {
   EXPECT_EQ(value["image"]["png"], "/v1/jobs/j_1/image?format=png&rev=7");
   EXPECT_TRUE(value["prepare"].is_null());
   EXPECT_TRUE(value["started_at"].is_null());
+  EXPECT_EQ(value["request"]["tree"], (json{{"references_per_triangle", 4.0}}));
+  for (const char* field : {"tree_references", "tree_bytes", "tree_peak_bytes", "tree_budget_reached"}) {
+    EXPECT_TRUE(value["statistics"].at(field).is_null()) << field;
+  }
+  job.statistics.tree = TreeFigures{5, 6, 7, true};
+  value = json::parse(job_json(job));
+  EXPECT_EQ(value["statistics"]["tree_references"], 5);
+  EXPECT_EQ(value["statistics"]["tree_bytes"], 6);
+  EXPECT_EQ(value["statistics"]["tree_peak_bytes"], 7);
+  EXPECT_EQ(value["statistics"]["tree_budget_reached"], true);
   job.state = JobState::kFailed;
   job.error = Error{ErrorKind::kInternal, "render_failed", "why", "where"};
   value = json::parse(job_json(job));

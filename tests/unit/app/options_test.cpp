@@ -72,6 +72,25 @@ TEST(CliOptions, ALensHasARadiusAndADistance) {
   }
 }
 
+TEST(CliOptions, ATreeHasABudget) {
+  const auto usual = cli({"render", "a.obj", "-o", "a.png"}).options.picture.request.tree;
+  EXPECT_EQ(usual, TreeBudget{});
+  for (const char* command : {"render", "submit", "quote"}) {
+    std::vector<const char*> words{command, "a.obj", "--tree-references", "1.5", "--tree-bytes", "500MB"};
+    if (command == std::string("render")) words.insert(words.end(), {"-o", "a.png"});
+    const auto tree = cli(words).options.picture.request.tree;
+    EXPECT_EQ(tree.references_per_triangle, 1.5) << command;
+    EXPECT_EQ(tree.max_bytes, 500'000'000U) << command;
+  }
+  for (const auto& [option, wrong] : {std::pair{"--tree-references", "0.9"}, {"--tree-references", "65"},
+                                     {"--tree-bytes", "0"}, {"--tree-bytes", "-1"},
+                                     {"--tree-bytes", "9007199254740992"}, {"--tree-bytes", "5 apples"}}) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(cli({"render", "a.obj", "-o", "a.png", option, wrong}).exit_code, 2) << option << ' ' << wrong;
+    EXPECT_NE(testing::internal::GetCapturedStderr(), "");
+  }
+}
+
 TEST(CliOptions, ReadsStops) {
   const auto stop_of = [](std::vector<const char*> more) {
     std::vector<const char*> all{"render", "a.obj", "-o", "a.png"};

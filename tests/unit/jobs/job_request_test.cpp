@@ -43,6 +43,11 @@ TEST(JobRequest, IsCheckedAgainstEveryLimit) {
       {"/crop/x", [](JobRequest& r) { r.crop = Crop{1, 0, r.width, r.height}; }},
       {"/crop/y", [](JobRequest& r) { r.crop = Crop{0, -1, r.width, r.height}; }},
       {"/crop/full_width", [](JobRequest& r) { r.crop = Crop{0, 0, 1'000'000, r.height}; }},
+      {"/tree/references_per_triangle", [](JobRequest& r) { r.tree.references_per_triangle = 0.99; }},
+      {"/tree/references_per_triangle", [](JobRequest& r) { r.tree.references_per_triangle = 64.5; }},
+      {"/tree/references_per_triangle", [](JobRequest& r) { r.tree.references_per_triangle = NAN; }},
+      {"/tree/max_bytes", [](JobRequest& r) { r.tree.max_bytes = 0; }},
+      {"/tree/max_bytes", [](JobRequest& r) { r.tree.max_bytes = std::uint64_t{1} << 53; }},
       {"/filter", [](JobRequest& r) { r.filter = PixelFilter::kBlackmanHarris, r.pixel_mode = PixelMode::kCentre; }},
   };
   for (const auto& [where, spoil] : rows) {
@@ -81,6 +86,21 @@ TEST(JobRecord, OfAnOlderVersionHasTheDefaultEffects) {
   ASSERT_EQ(text.find("effect"), std::string::npos);
   EXPECT_EQ(decode_job(text)->request.effects, "auto");
   EXPECT_TRUE(decode_job(text)->effects.lines.empty());
+  ASSERT_EQ(text.find("tree"), std::string::npos);
+  EXPECT_EQ(decode_job(text)->request.tree, TreeBudget{});
+  EXPECT_FALSE(decode_job(text)->statistics.tree);
+}
+
+TEST(JobRequest, BudgetsOfTreesHaveATextOfTheirOwn) {
+  const auto text = [](double references, std::optional<std::uint64_t> bytes) {
+    TreeBudget tree;
+    tree.references_per_triangle = references;
+    tree.max_bytes = bytes;
+    return tree_budget_text(tree);
+  };
+  EXPECT_EQ(text(4.0, std::nullopt), "4");
+  EXPECT_EQ(text(4.0, 1'000'000), "4 1000000");
+  EXPECT_NE(text(1.1, std::nullopt), text(std::nextafter(1.1, 2.0), std::nullopt));
 }
 
 TEST(JobRequest, ResultDigestLeavesOutWhatChangesNoPicture) {
@@ -108,6 +128,8 @@ TEST(JobRequest, ResultDigestLeavesOutWhatChangesNoPicture) {
       [](JobRequest& r) { r.filter = PixelFilter::kBlackmanHarris; },
       [](JobRequest& r) { r.emitter_choice = EmitterChoice::kTree; },
       [](JobRequest& r) { r.texture_filter = TextureFilter::kFootprint; },
+      [](JobRequest& r) { r.tree.references_per_triangle = 2.0; },
+      [](JobRequest& r) { r.tree.max_bytes = 4; },
       [](JobRequest& r) { r.lens = Lens{0.0, 1.0}; },
       [](JobRequest& r) { r.crop = Crop{0, 0, r.width, r.height}; }};
   for (const auto& change : changes) {
@@ -127,6 +149,9 @@ TEST(JobRecord, ReadsBack) {
   job.request.filter = PixelFilter::kBlackmanHarris;
   job.request.emitter_choice = EmitterChoice::kPower;
   job.request.texture_filter = TextureFilter::kFootprint;
+  job.request.tree.references_per_triangle = 1.1;
+  job.request.tree.max_bytes = 9007199254740991U;
+  job.statistics.tree = TreeFigures{5, 6, 7, true};
   job.request.camera = OwnCamera{{0.1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33.3, 7.5};
   job.request.seed = (1ULL << 53) - 1;
   job.request.reuse = true;
@@ -161,6 +186,12 @@ TEST(JobRecord, ReadsBack) {
   EXPECT_TRUE(is_approximation(back->effects));
   EXPECT_EQ(back->effects.lines.at(1).left_out, "mirror lobes");
   EXPECT_TRUE(back->request.reuse);
+  EXPECT_EQ(back->request.tree, job.request.tree);
+  ASSERT_TRUE(back->statistics.tree);
+  EXPECT_EQ(back->statistics.tree->references, 5U);
+  EXPECT_EQ(back->statistics.tree->bytes, 6U);
+  EXPECT_EQ(back->statistics.tree->peak_bytes, 7U);
+  EXPECT_TRUE(back->statistics.tree->budget_reached);
   EXPECT_EQ(back->error->message, "why");
   EXPECT_EQ(back->statistics.bad_samples.at(1).sample, 6U);
   EXPECT_EQ(back->statistics.roulette_ends, 5U);

@@ -3,6 +3,7 @@
 
 #include <latch>
 
+#include "raykiln/workers/scene_tree.hpp"
 #include "support/server_rig.hpp"
 #include "support/temp_directory.hpp"
 
@@ -35,14 +36,14 @@ struct HeldBuilder {
   std::atomic<bool> released{false};
   std::atomic<int> begun{0}, stopped{0};
   TreeBuilder builder() {
-    return [this](const render::Scene& scene, render::TaskRunner& runner) {
+    return [this](const render::Scene& scene, const TreeBudget& budget, render::TaskRunner& runner) {
       ++begun;
       while (!released && !runner.stop_requested()) std::this_thread::yield();
       if (runner.stop_requested()) {
         ++stopped;
         return std::shared_ptr<const render::KdTree>();
       }
-      return render::build_scene_tree(scene, render::BuildParams{}, runner);
+      return build_tree(scene, budget, runner);
     };
   }
   void wait_begun(int n) const {

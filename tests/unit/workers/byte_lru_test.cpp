@@ -19,12 +19,19 @@ TEST(ByteLru, DropsTheLeastRecentlyUsedBeyondItsBytes) {
   lru.insert("huge", 5, 1000);
   EXPECT_EQ(lru.use("huge"), 5) << "what is being used now stays";
   EXPECT_EQ(lru.bytes(), 1000U);
-  lru.insert("beside", 6, 20, "huge");
+  lru.insert("beside", 6, 20, {"huge", "not there"});
   EXPECT_TRUE(lru.contains("huge")) << "what the last one refers to stays with it";
   EXPECT_EQ(lru.bytes(), 1020U);
   lru.insert("next", 7, 30);
   EXPECT_FALSE(lru.contains("beside") || lru.contains("huge")) << "who refers goes first";
   EXPECT_EQ(lru.bytes(), 30U);
+  lru.insert("next to it", 8, 1000, {"next"});
+  lru.insert("b", 9, 1000, {"next", "next to it"});
+  EXPECT_EQ(lru.bytes(), 2030U) << "all that it refers to";
+  EXPECT_EQ(lru.keys_with("next"), (std::vector<std::string>{"next", "next to it"}));
+  EXPECT_TRUE(lru.keys_with("nexus").empty());
+  lru.erase("b");
+  lru.erase("next to it");
   lru.erase("next");
   EXPECT_EQ(lru.bytes(), 0U);
 }

@@ -5,6 +5,7 @@
 
 #include <future>
 
+#include "raykiln/render/limited_tree.hpp"
 #include "support/fake_intake.hpp"
 #include "support/memory_store.hpp"
 #include "support/temp_directory.hpp"
@@ -42,15 +43,19 @@ class SceneCacheTest : public testing::Test {
     EXPECT_TRUE(store.commit_scene(std::move(*upload), "", WallTime{}, ""));
     return id;
   }
-  ReadyScene hold(std::size_t scene) {
+  Result<ReadyScene> prepared(std::size_t scene, const TreeBudget& budget) {
     auto promise = std::make_shared<std::promise<Result<ReadyScene>>>();
-    const auto ticket = cache->prepare(ids[scene], {}, [promise](Result<ReadyScene> r) { promise->set_value(std::move(r)); });
-    auto ready = promise->get_future().get();
+    const auto ticket = cache->prepare(ids[scene], budget, {}, [promise](Result<ReadyScene> r) { promise->set_value(std::move(r)); });
+    return promise->get_future().get();
+  }
+  ReadyScene hold(std::size_t scene, const TreeBudget& budget = {}) {
+    auto ready = prepared(scene, budget);
     EXPECT_TRUE(ready);
     return std::move(*ready);
   }
   [[nodiscard]] bool ready(std::size_t scene) const { return cache->state(ids[scene]) == CacheState::kReady; }
   double builds() { return metrics.counter("raykiln_tree_builds_total", "").value(); }
+  double imports() { return metrics.counter("raykiln_scene_imports_total", "").value(); }
 
   TempDirectory directory;
   MemoryStore store{StoreSettings{directory.path(), kGiB}, UploadLimits{}};
@@ -121,6 +126,66 @@ TEST_F(SceneCacheTest, TablesOfEmittersAreCounted) {
   const std::uint64_t two = cache->bytes();
   hold(2);
   EXPECT_LT(cache->bytes() - two, one);
+}
+
+TreeBudget budget_of(double references, std::optional<std::uint64_t> bytes = std::nullopt) {
+  TreeBudget budget;
+  budget.references_per_triangle = references;
+  budget.max_bytes = bytes;
+  return budget;
+}
+
+TEST_F(SceneCacheTest, BudgetsHaveTreesOfTheirOwnOfOneImport) {
+  open(kGiB);
+  const double built = builds(), read = imports();
+  const TreeBudget wide = budget_of(4.0), narrow = budget_of(1.0), bounded = budget_of(4.0, 1 << 20);
+  const ReadyScene a = hold(0, wide), b = hold(0, narrow), c = hold(0, bounded);
+  EXPECT_EQ(builds(), built + 3.0);
+  EXPECT_EQ(imports(), read + 1.0);
+  EXPECT_TRUE(a.scene == b.scene && a.scene == c.scene);
+  EXPECT_NE(a.prepared, b.prepared);
+  EXPECT_TRUE(a.tree_key != b.tree_key && a.tree_key != c.tree_key);
+  EXPECT_EQ(hold(0, narrow).prepared, b.prepared);
+  EXPECT_EQ(builds(), built + 3.0);
+  EXPECT_LT(cache->bytes(), 3 * one) << "the import counts once";
+  EXPECT_GT(cache->bytes(), one);
+  for (const TreeBudget& budget : {wide, narrow, bounded}) EXPECT_EQ(cache->state(ids[0], budget), CacheState::kReady);
+  EXPECT_EQ(cache->state(ids[0], budget_of(2.0)), CacheState::kAbsent);
+  EXPECT_EQ(cache->state(ids[0], budget_of(4.0, 1 << 2)), CacheState::kAbsent) << "no beginning of another's";
+  EXPECT_TRUE(ready(0));
+  cache->forget(ids[0]);
+  EXPECT_FALSE(ready(0));
+  for (const TreeBudget& budget : {wide, narrow, bounded}) EXPECT_EQ(cache->state(ids[0], budget), CacheState::kAbsent);
+  hold(0, narrow);
+  EXPECT_EQ(imports(), read + 2.0) << "what was deleted is read again";
+  EXPECT_EQ(builds(), built + 3.0) << "its tree is that of any such geometry";
+}
+
+TEST_F(SceneCacheTest, BudgetsAreBoundedLikeScenes) {
+  open(2 * one);
+  for (int i = 0; i < 40; ++i) {
+    hold(static_cast<std::size_t>(i % 2), budget_of(1.0 + i));
+    EXPECT_LE(cache->bytes(), 2 * one) << i;
+  }
+  EXPECT_EQ(cache->state(ids[1], budget_of(40.0)), CacheState::kReady);
+  EXPECT_EQ(cache->state(ids[0], budget_of(1.0)), CacheState::kAbsent);
+}
+
+TEST_F(SceneCacheTest, TooFewBytesAreRefusedWithWhatIsNeeded) {
+  open(kGiB);
+  const double built = builds();
+  const auto refused = prepared(0, budget_of(4.0, 1));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, "tree_too_large");
+  EXPECT_EQ(refused.error().kind, ErrorKind::kTooLarge);
+  EXPECT_EQ(refused.error().where, "/tree/max_bytes");
+  const std::uint64_t least = render::least_tree_bytes(*hold(0).scene, {});
+  EXPECT_NE(refused.error().message.find(std::to_string(least) + " or more"), std::string::npos)
+      << refused.error().message;
+  EXPECT_EQ(builds(), built + 1.0) << "of the one that was looked at here";
+  EXPECT_FALSE(prepared(0, budget_of(4.0, least - 1)));
+  EXPECT_LE(hold(0, budget_of(4.0, least)).tree.stats.live_bytes_peak, least);
+  EXPECT_EQ(cache->state(ids[0], budget_of(4.0, 1)), CacheState::kAbsent);
 }
 
 TEST_F(SceneCacheTest, ForgetGivesBytesBack) {

@@ -10,7 +10,7 @@ enum class ExitCode : int {
   kFailure = 1,         ///< the machine: a file cannot be written, memory, a fault of this program
   kUsage = 2,           ///< the command line is wrong
   kScene = 3,           ///< the scene, or a picture to compare, is wrong or cannot be read
-  kJobFailed = 4,
+  kJobFailed = 4,       ///< also: the tree does not fit the bytes that it may take
   kJobCancelled = 5,
   kNoServer = 6,        ///< the server cannot be reached, or went away
   kRefused = 7,         ///< the server refused the request
@@ -30,7 +30,7 @@ enum class ExitCode : int {
          "  1  failure of this machine (file cannot be written, out of memory, internal fault)\n"
          "  2  wrong command line\n"
          "  3  the scene, or a picture to compare, is wrong or cannot be read\n"
-         "  4  the job failed; batch: a picture did\n"
+         "  4  the job failed, or its tree does not fit --tree-bytes; batch: a picture failed\n"
          "  5  the job was cancelled; batch: a picture was, or was skipped\n"
          "  6  the server cannot be reached\n"
          "  7  the server refused the request\n"

@@ -23,6 +23,8 @@ struct JobLimits {
   int max_tile = 4'096;                         ///< pixels a side
   std::uint64_t max_tiles = 1'000'000;          ///< of one film
   int max_priority = 100;                       ///< 1 .. this
+  double max_tree_references = 64.0;            ///< a triangle, of the tree
+  std::uint64_t max_tree_bytes = (std::uint64_t{1} << 53) - 1;  ///< that a job may name; exact as a JSON number
   std::size_t max_name_bytes = 200;
 };
 

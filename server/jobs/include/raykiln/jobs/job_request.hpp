@@ -58,6 +58,13 @@ struct Crop {
   int full_width = 1, full_height = 1;
 };
 
+/// What the tree of a scene may take. Where either stops the builder, rays take longer; no pixel changes.
+struct TreeBudget {
+  double references_per_triangle = 4.0;       ///< at most, 1 or more
+  std::optional<std::uint64_t> max_bytes{};   ///< that building it may hold at once, beside the scene's mesh; unset: any
+  bool operator==(const TreeBudget&) const = default;
+};
+
 /// Index into the cameras of the scene, name of one of them, or one of the user's own.
 using CameraChoice = std::variant<int, std::string, OwnCamera>;
 
@@ -91,8 +98,12 @@ struct JobRequest {
   /// Samples go where the error is, by cells of 16 x 16 pixels, which are the tiles then (kAdaptiveTile); needs
   /// an error or a time to stop at, and stop.samples is the most of any pixel.
   bool adaptive = false;
+  TreeBudget tree{};
   bool reuse = false;           ///< a completed job whose picture is this one may stand in for it
 };
+
+/// Equal exactly for equal budgets: "4" or "4 1000000".
+[[nodiscard]] std::string tree_budget_text(const TreeBudget& budget);
 
 [[nodiscard]] std::string_view name(PixelMode value);
 [[nodiscard]] std::string_view name(DirectionSampling value);

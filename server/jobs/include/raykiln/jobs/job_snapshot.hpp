@@ -57,9 +57,18 @@ struct LocatedSample {
   std::uint64_t sample = 0;
 };
 
+/// What the tree of a scene came to.
+struct TreeFigures {
+  std::uint64_t references = 0;     ///< triangles of leaves; one may stand in several
+  std::uint64_t bytes = 0;
+  std::uint64_t peak_bytes = 0;     ///< most that the build held at once, beside the mesh
+  bool budget_reached = false;      ///< a bound on references, bytes or depth stopped a useful split
+};
+
 struct JobStatistics {
   double prepare_seconds = 0.0;  ///< waiting for scene and tree
   std::optional<double> tree_build_seconds{};  ///< 0: the tree was there already
+  std::optional<TreeFigures> tree{};           ///< of the scene's tree, once it is there
   double render_seconds = 0.0;   ///< from the first task to the last sample (or until now)
   double worker_seconds = 0.0;   ///< spent rendering, summed over workers
   double idle_seconds = 0.0;     ///< of workers while this job had work to do

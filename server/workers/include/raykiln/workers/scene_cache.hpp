@@ -48,12 +48,12 @@ class PrepareTicket {
 };
 
 /// How a tree is made; a seam for tests. Null exactly when the runner was asked to stop.
-using TreeBuilder = std::function<std::shared_ptr<const render::KdTree>(const render::Scene&,
-                                                                        render::TaskRunner&)>;
+using TreeBuilder = std::function<std::shared_ptr<const render::KdTree>(
+    const render::Scene&, const TreeBudget&, render::TaskRunner&)>;
 
-/// Single flight for scenes and for trees; the tree's key is (geometry digest, build parameters,
-/// kKdTreeVersion). Least recently used scenes and trees are dropped beyond the bound; who holds one
-/// keeps it. Safe to use from any thread.
+/// Single flight for scenes and for trees; a scene is made ready for a budget of its tree, whose key is (geometry
+/// digest, build parameters, bytes, kKdTreeVersion). What was imported serves all budgets. Least recently used
+/// scenes and trees are dropped beyond the bound; who holds one keeps it. Safe to use from any thread.
 class SceneCache {
  public:
   struct Parts {
@@ -63,22 +63,25 @@ class SceneCache {
     const Clock& clock;
     MetricsRegistry& metrics;
     Log log;
-    TreeBuilder build{};  ///< empty: render::build_scene_tree with default parameters
+    TreeBuilder build{};  ///< empty: build_tree()
   };
   SceneCache(const WorkerSettings& settings, Parts parts);
   ~SceneCache();  ///< stops all flights, joins
 
   /// Calls `done` once, within this call when the scene is ready, else on another thread, unless the
   /// ticket is dropped before; `progress` rarely, before `done`. Both must only post, and must own
-  /// what they touch: a call that is under way when the ticket is dropped still ends.
+  /// what they touch: a call that is under way when the ticket is dropped still ends. Errors: those of the
+  /// store, of SceneIntake::load and of check_tree_budget().
   [[nodiscard]] std::unique_ptr<PrepareTicket> prepare(
-      const std::string& scene_id, std::function<void(PrepareProgress)> progress,
-      std::function<void(Result<ReadyScene>)> done);
+      const std::string& scene_id, const TreeBudget& budget,
+      std::function<void(PrepareProgress)> progress, std::function<void(Result<ReadyScene>)> done);
 
+  /// With a tree of this budget, or of any.
+  [[nodiscard]] CacheState state(const std::string& scene_id, const TreeBudget& budget) const;
   [[nodiscard]] CacheState state(const std::string& scene_id) const;
-  /// How far the preparation is; kNone when there is none.
+  /// How far a preparation is, whatever its budget; kNone when there is none.
   [[nodiscard]] PrepareProgress progress(const std::string& scene_id) const;
-  /// Statistics of the scene's tree if it was built by this process.
+  /// Statistics of the tree that was last made ready for the scene by this process.
   [[nodiscard]] std::optional<TreeReport> tree_report(const std::string& scene_id) const;
   /// Drops what is kept of a deleted scene.
   void forget(const std::string& scene_id);

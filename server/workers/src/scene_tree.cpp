@@ -1,0 +1,35 @@
+#include "raykiln/workers/scene_tree.hpp"
+
+#include "raykiln/render/limited_tree.hpp"
+
+namespace raykiln::server {
+
+render::BuildParams build_params(const TreeBudget& budget) {
+  render::BuildParams params;
+  params.max_duplication = budget.references_per_triangle;
+  return params;
+}
+
+Status check_tree_budget(const render::Scene& scene, const TreeBudget& budget) {
+  if (!budget.max_bytes) return success();
+  const std::uint64_t least = render::least_tree_bytes(scene, build_params(budget));
+  if (*budget.max_bytes >= least) return success();
+  return Error{ErrorKind::kTooLarge, "tree_too_large",
+               "a tree of this scene may need " + std::to_string(least) + " bytes, and " +
+                   std::to_string(*budget.max_bytes) + " are allowed: allow " + std::to_string(least) +
+                   " or more (tree.max_bytes, --tree-bytes), or set no limit",
+               "/tree/max_bytes"};
+}
+
+std::shared_ptr<const render::KdTree> build_tree(const render::Scene& scene, const TreeBudget& budget,
+                                                 render::TaskRunner& runner) {
+  render::BuildLimits limits;
+  limits.max_bytes = budget.max_bytes.value_or(0);
+  return render::build_scene_tree(scene, build_params(budget), runner, limits);
+}
+
+TreeFigures tree_figures(const render::BuildStats& stats) {
+  return {stats.references, stats.bytes, stats.live_bytes_peak, stats.budget_reached};
+}
+
+}  // namespace raykiln::server
