@@ -41,6 +41,8 @@ export interface JobRequest {
   layers?: string[];
   lens?: { radius: number; focus_distance?: number };
   crop?: { x: number; y: number; full_width: number; full_height: number };
+  /** What the scene's tree may take. */
+  tree?: { references_per_triangle?: number; max_bytes?: number };
   tile?: number;
   priority?: number;
 }

@@ -9,7 +9,7 @@ export type FormKey =
   | "width" | "height" | "samples" | "error" | "seconds" | "max_depth"
   | "name" | "seed" | "priority" | "tile" | "branches"
   | "light_model" | "pixel_mode" | "direction_sampling" | "emitter_sampling" | "emitter_choice" | "texture_filter" | "filter" | "sampler" | "adaptive"
-  | "effects" | "without" | OverrideKey;
+  | "effects" | "without" | "tree_references" | "tree_bytes" | OverrideKey;
 
 /** Switches against the named light model; empty: as the model has it. */
 const kOverrides = ["phong", "fresnel", "radiance_scaling", "diffuse_sampling", "roulette"] as const;
@@ -25,6 +25,8 @@ export const kWithout = "without";
 export const kOwnCamera = "own";
 
 const kMostSamples = 1048576;
+/** Of a tree, by the server; a job always tells. */
+const kUsualReferences = 4;
 
 export const kDefaultForm: FormValues = {
   scene: "", camera: "0", eye: "0 0 5", look_at: "0 0 0", up: "0 1 0", fov_deg: "40", view_height: "",
@@ -32,7 +34,7 @@ export const kDefaultForm: FormValues = {
   width: "640", height: "480", samples: "64", error: "", seconds: "", max_depth: "",
   name: "", seed: "0", priority: "10", tile: "64", branches: "1",
   light_model: "physical", pixel_mode: "random", direction_sampling: "bsdf", emitter_sampling: "true", emitter_choice: "auto", texture_filter: "exact", filter: "box", sampler: "random", adaptive: "false",
-  effects: "auto", without: "",
+  effects: "auto", without: "", tree_references: "", tree_bytes: "",
   phong: "", fresnel: "", radiance_scaling: "", diffuse_sampling: "", roulette: "",
 };
 
@@ -81,6 +83,8 @@ export const kFields: readonly FieldSpec[] = [
   { key: "seed", pointer: "/seed", label: "Seed", hint: "of the noise", kind: "integer", group: "more", min: 0 },
   { key: "priority", pointer: "/priority", label: "Priority", hint: "1 to 100", kind: "integer", group: "more", min: 1, max: 100 },
   { key: "tile", pointer: "/tile", label: "Tile edge", hint: "pixels", kind: "integer", group: "more", min: 1, max: 4096 },
+  { key: "tree_references", pointer: "/tree/references_per_triangle", label: "Tree references", hint: "a triangle, at most; empty: 4", kind: "number", group: "more", min: 1, max: 64, optional: true },
+  { key: "tree_bytes", pointer: "/tree/max_bytes", label: "Tree memory", hint: "bytes, at most; empty: any", kind: "integer", group: "more", min: 1, optional: true },
   { key: "branches", pointer: "/branches", label: "Branches", hint: "rays a hit", kind: "integer", group: "more", min: 1, max: 16 },
   { key: "pixel_mode", pointer: "/pixel_mode", label: "Sample position", hint: "", kind: "choice", group: "more",
     choices: [["random", "Random in the pixel"], ["centre", "Pixel centre"]] },
@@ -198,6 +202,7 @@ export function to_request(values: FormValues): JobRequest {
     ...(values.adaptive === "true" ? { adaptive: true } : {}),
     effects: values.effects === kWithout ? { without: names(values.without) } : values.effects,
     ...lens_and_crop(values),
+    ...tree_budget(values),
     ...(values.layers === "" ? {} : { layers: kAskedLayers.filter((layer) => is_chosen(values.layers, layer)) }),
     tile: number("tile"),
     priority: number("priority"),
@@ -212,6 +217,16 @@ function lens_and_crop(values: FormValues): Pick<JobRequest, "lens" | "crop"> {
     ...(radius !== undefined && focus_distance !== undefined ? { lens: { radius, focus_distance } } : {}),
     ...(crop ? { crop: { x, y, full_width, full_height } } : {}),
   };
+}
+
+function tree_budget(values: FormValues): Pick<JobRequest, "tree"> {
+  const references = values.tree_references.trim();
+  const bytes = values.tree_bytes.trim();
+  if (references === "" && bytes === "") return {};
+  return { tree: {
+    ...(references === "" ? {} : { references_per_triangle: Number(references) }),
+    ...(bytes === "" ? {} : { max_bytes: Number(bytes) }),
+  } };
 }
 
 const names = (text: string): string[] => text.split(",").filter((name) => name !== "");
@@ -267,6 +282,9 @@ export function from_job(job: Job, cameras: readonly { index: number; name: stri
   values.effects = typeof effects === "string" ? effects : kWithout;
   values.without = typeof effects === "string" ? "" : effects.without.join(",");
   values.layers = kAskedLayers.filter((layer) => request.layers?.includes(layer)).join(",");
+  const { references_per_triangle, max_bytes } = request.tree ?? {};
+  values.tree_references = references_per_triangle === undefined || references_per_triangle === kUsualReferences ? "" : String(references_per_triangle);
+  values.tree_bytes = max_bytes === undefined ? "" : String(max_bytes);
   const { lens, crop } = request;
   if (lens) values.lens = `${lens.radius} ${lens.focus_distance ?? 1}`;
   if (crop) values.crop = `${crop.x} ${crop.y} ${crop.full_width} ${crop.full_height}`;

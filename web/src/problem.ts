@@ -87,6 +87,7 @@ const kRemedies: Record<string, string> = {
   payload_too_large: "Leave out files the scene does not need, or raise the server's upload limit.",
   unsupported_media_type: "Send a .zip, a .glb, or an .obj or .gltf with the files it names.",
   film_too_large: "Choose a smaller width or height.",
+  tree_too_large: "Allow the tree more memory, or leave the limit empty.",
   archive_invalid: "Pack the scene again as an ordinary zip and check that the file is whole.",
   archive_too_large: "Pack fewer or smaller files.",
   unsafe_name: "Rename the file: relative paths with forward slashes only.",

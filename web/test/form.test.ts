@@ -54,6 +54,18 @@ describe("to_request and from_job", () => {
     expect(from_job(job({ request }), [])).toEqual({ ...values, eye: "1 2 3.5" });
   });
 
+  test("a tree's budget survives the round, and is left out where it is empty", () => {
+    const values = filled({ tree_references: "1.5", tree_bytes: "500000000" });
+    const request = to_request(values);
+    expect(request.tree).toEqual({ references_per_triangle: 1.5, max_bytes: 500000000 });
+    expect(from_job(job({ request }), [])).toMatchObject({ tree_references: "1.5", tree_bytes: "500000000" });
+    expect(Object.keys(to_request(filled()))).not.toContain("tree");
+    expect(to_request(filled({ tree_references: "2" })).tree).toEqual({ references_per_triangle: 2 });
+    expect(from_job(job({ request: { ...request, tree: { references_per_triangle: 4 } } }), [])).toMatchObject({ tree_references: "", tree_bytes: "" });
+    expect(Object.keys(check_form(filled({ tree_references: "0.5", tree_bytes: "0" })))).toEqual(["tree_references", "tree_bytes"]);
+    expect(place_errors([{ pointer: "/tree/max_bytes", message: "more" }])).toEqual({ tree_bytes: "more" });
+  });
+
   test("lens, window, view height and layers survive the round", () => {
     const values = filled({
       camera: kOwnCamera, view_height: "2.5", lens: "0.05 2", crop: "640 0 1920 1080", layers: "albedo,depth,direct",

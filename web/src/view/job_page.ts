@@ -315,7 +315,7 @@ function replay_rows(job: Job): [string, string][] {
 }
 
 function setting_rows(job: Job): [string, string][] {
-  const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, effects, layers, lens, crop, ...rest } = job.request;
+  const { stop, scene: _scene, camera, name: _name, light_model_overrides: overrides, effects, layers, lens, crop, tree, ...rest } = job.request;
   const rows: [string, string][] = [];
   if (stop.samples !== undefined) rows.push(["Samples at most", count(stop.samples)]);
   if (stop.error !== undefined) rows.push(["Error target", error_percent(stop.error)]);
@@ -325,6 +325,8 @@ function setting_rows(job: Job): [string, string][] {
   for (const [key, value] of Object.entries(rest)) rows.push([label_of(key), statistic(key === "seed" ? "" : key, value)]);
   if (lens) rows.push(["Lens", `radius ${lens.radius} m, focus at ${lens.focus_distance ?? 1} m`]);
   if (crop) rows.push(["Window", `at ${crop.x}, ${crop.y} of ${crop.full_width} × ${crop.full_height}`]);
+  if (tree?.references_per_triangle !== undefined) rows.push(["Tree references at most", `${tree.references_per_triangle} a triangle`]);
+  if (tree?.max_bytes !== undefined) rows.push(["Tree memory at most", statistic("bytes", tree.max_bytes)]);
   if (layers && layers.length > 0) rows.push(["Layers", layers.map(label_of).join(", ")]);
   if (effects !== undefined) rows.push(["Effects", effects_text(effects)]);
   rows.push(["Job", job.id]);
