@@ -31,7 +31,7 @@ constexpr std::size_t kBatchShadows = 4096;  ///< shadow rays of a batch
 
 MatteKernel kernel_for(Traversal traversal) {
 #ifdef RAYKILN_X86_KERNELS
-  const Traversal chosen = resolve(traversal);
+  const Traversal chosen = with_test(resolve(traversal), TriangleTest::kWatertight);
   if (chosen == Traversal::kAvx512) return matte_kernel_avx512();
   if (chosen == Traversal::kAvx2) return matte_kernel_avx2();
 #else
@@ -43,7 +43,7 @@ MatteKernel kernel_for(Traversal traversal) {
 /// Is everything that these settings ask for at such a vertex in the kernel?
 bool covers(const Transport& t) {
   const PathSettings& s = t.settings;
-  return s.branches == 1 && s.max_depth > 0 && s.left_out.empty() &&
+  return s.branches == 1 && s.max_depth > 0 && (s.left_out - EffectSet{Effect::kWatertightTriangles}).empty() &&
          s.bsdf.direction_sampling == DirectionSampling::kBsdf &&
          s.bsdf.light.diffuse_sampling == DiffuseSampling::kCosine && t.environment == nullptr &&
          t.textures == nullptr && !t.gaps.any() && t.spot_lights.empty() && t.directional_lights.empty() &&

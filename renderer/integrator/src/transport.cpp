@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "raykiln/accel/kernels.hpp"
+
 namespace raykiln::render {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr EffectSet kFolded{
     Effect::kEmitterSampling, Effect::kBackground,  Effect::kEnvironment,
     Effect::kFresnel,         Effect::kShadingNormals, Effect::kRoulette,
     Effect::kTextures,        Effect::kDepthOfField, Effect::kAlphaCoverage,
-    Effect::kOneSidedSurfaces};
+    Effect::kOneSidedSurfaces, Effect::kWatertightTriangles};
 
 PathSettings folded(PathSettings s, const Emitters& emitters) {
   const EffectSet simulated = s.simulated;
@@ -28,6 +30,9 @@ PathSettings folded(PathSettings s, const Emitters& emitters) {
   s.bsdf.light.roulette = s.bsdf.light.roulette && simulated.contains(Effect::kRoulette) &&
                           s.max_depth > kBouncesBeforeRoulette;
   if (!simulated.contains(Effect::kFresnel)) s.bsdf.light.fresnel = FresnelFormula::kNone;
+  if (s.left_out.contains(Effect::kWatertightTriangles)) {
+    s.traversal = with_test(s.traversal, TriangleTest::kFast);
+  }
   if (s.left_out.contains(Effect::kIndirectLight)) s.max_depth = std::min(s.max_depth, 1);
   return s;
 }

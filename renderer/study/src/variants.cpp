@@ -27,6 +27,7 @@ constexpr EffectSet kBounces{Effect::kIndirectLight};
 constexpr EffectSet kEmitters{Effect::kEmitterSampling};
 constexpr EffectSet kGlass{Effect::kFresnel};
 constexpr EffectSet kLobes{Effect::kGlossyLobes, Effect::kMirrors};
+constexpr EffectSet kSurfaces{Effect::kWatertightTriangles};
 
 std::vector<Knob> knobs() {
   return {
@@ -53,6 +54,8 @@ std::vector<Knob> knobs() {
        [](Variant& v) { v.settings.texture_reading = TextureReading::kFootprint; }},
       {"effects=all", "code for every effect, called for or not", {},
        [](Variant& v) { v.settings.effects.mode = EffectChoice::Mode::kAll; }},
+      {"triangles=fast", "triangles are tested in float, without a bound on its errors", kSurfaces,
+       [](Variant& v) { v.settings.effects.without.insert(Effect::kWatertightTriangles); }},
       {"tree=finer", "a test costs as much as a step of the tree: smaller leaves, more memory", {},
        [](Variant& v) { v.tree.k_i = 1.0; }},
       {"depth=4 emitters=bsdf", "both", kBounces,

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <thread>
 
+#include "raykiln/accel/kernels.hpp"
 #include "support/effect_rooms.hpp"
 
 namespace raykiln::render {
@@ -14,7 +15,7 @@ Film film_of(const PreparedScene& scene, RenderSettings settings, const EffectCh
              std::uint64_t samples, int threads = 1) {
   settings.effects = choice;
   const auto blocks = blocks_for(samples);
-  const int bands = threads == 1 ? 1 : 5;
+  const int bands = threads == 1 ? 1 : std::max(5, threads);
   std::vector<TileResult> results(static_cast<std::size_t>(bands));
   std::vector<std::jthread> running;
   for (int t = 0; t < threads; ++t) {
@@ -85,8 +86,8 @@ TEST(Effects, AutoIsAllInRandomScenes) {
     expect_auto_is_all(s, 3);
   }
   EXPECT_EQ(list(EffectSet::everything() - seen_on), "") << "never called for";
-  EXPECT_EQ(list(EffectSet::everything() - seen_off - EffectSet{Effect::kDiffuseReflection}), "")
-      << "always called for";
+  constexpr EffectSet kAlways{Effect::kDiffuseReflection, Effect::kWatertightTriangles};
+  EXPECT_EQ(list(EffectSet::everything() - seen_off - kAlways), "") << "always called for";
 }
 
 /// One effect by itself in an otherwise matte room.
@@ -140,6 +141,21 @@ TEST_F(EachEffect, LeftOutByNameChangesThePicture) {
     EXPECT_TRUE(effect_plan(settings, room_.builder.scene()).approximated().contains(row->effect))
         << row->name;
     EXPECT_NE(full.plane("beauty"), film(without, 8).plane("beauty")) << row->name;
+  }
+}
+
+TEST_F(EachEffect, WithoutWatertightTrianglesNoThreadAndNoKernelChangesABit) {
+  const EffectChoice without{EffectChoice::Mode::kAuto, {Effect::kWatertightTriangles}};
+  const Film one = film_of(*scene_, room_.settings, without, 4);
+  std::string differing;
+  for (const int threads : {2, 7}) {
+    EXPECT_TRUE(same(one, film_of(*scene_, room_.settings, without, 4, threads), differing))
+        << threads << " threads, planes: " << differing;
+  }
+  for (const Traversal walk : {Traversal::kBruteForce, Traversal::kScalar, Traversal::kAvx2, Traversal::kAvx512}) {
+    room_.settings.traversal = walk;
+    EXPECT_TRUE(same(one, film_of(*scene_, room_.settings, without, 4), differing))
+        << name(walk) << ", planes: " << differing;
   }
 }
 

@@ -15,7 +15,7 @@ EffectPlan plan(support::EffectScene s, const char* choice) {
 TEST(EffectPlan, AutoSimulatesWhatIsCalledFor) {
   const EffectPlan matte = plan(support::matte_point_light(), "auto");
   EXPECT_TRUE(matte.called_for == (EffectSet{Effect::kPointLights, Effect::kPointLightShadows,
-                                             Effect::kDiffuseReflection}));
+                                             Effect::kDiffuseReflection, Effect::kWatertightTriangles}));
   EXPECT_TRUE(matte.simulated == matte.called_for);
   EXPECT_TRUE(matte.approximated().empty());
   EXPECT_TRUE(plan(support::complete(), "auto").simulated == EffectSet::everything());

@@ -168,6 +168,9 @@ TEST(EffectRows, Conditions) {
          light(1.0F)(c);
        }},
       {"max_depth 0, a point light", Effect::kIndirectLight, false, light(1.0F)},
+      {"no triangle", Effect::kWatertightTriangles, false,
+       [](Case& c) { c.scene().mesh = {}; }},
+      {"triangles in a grey sky", Effect::kWatertightTriangles, true, depth(0)},
       {"matte surfaces alone", Effect::kCaustics, false, depth(8)},
       {"matte and mirror", Effect::kCaustics, true,
        [&](Case& c) {

@@ -27,4 +27,5 @@
   ROW(IndirectLight, indirect_light)             \
   ROW(Caustics, caustics)                        \
   ROW(Roulette, roulette)                        \
-  ROW(DepthOfField, depth_of_field)
+  ROW(DepthOfField, depth_of_field)              \
+  ROW(WatertightTriangles, watertight_triangles)
