@@ -24,10 +24,11 @@ using raykiln::render::kNoHit;
 using raykiln::render::Occlusion;
 using raykiln::render::Ray;
 using raykiln::render::Traversal;
+using raykiln::render::TriangleTest;
 using raykiln::test::TestMesh;
 
 struct Options {
-  std::string embree, json;
+  std::string embree, json, test = "watertight";
   std::vector<std::string> scenes;
   std::vector<std::string> kernels{"scalar", "avx2", "avx512"};
   raykiln::render::BuildParams params;
@@ -35,7 +36,7 @@ struct Options {
   std::size_t stream = 4096;
   int repeat = 5;
   std::uint64_t seed = 1;  ///< of the rays
-  bool fast = false;
+  [[nodiscard]] bool fast() const { return test == "fast"; }
 };
 
 double median(std::vector<double> values) {
@@ -75,10 +76,10 @@ class Comparison {
     tree_ = raykiln::render::build_kdtree(mesh.view(), options.params, runner);
     const double our_seconds = ours.elapsed().cpu;
     const Stopwatch high;
-    high_ = library.build(mesh.view(), EmbreeQuality::kHigh, !options.fast);
+    high_ = library.build(mesh.view(), EmbreeQuality::kHigh, !options.fast());
     const double high_seconds = high.elapsed().cpu;
     const Stopwatch medium;
-    medium_ = library.build(mesh.view(), EmbreeQuality::kMedium, !options.fast);
+    medium_ = library.build(mesh.view(), EmbreeQuality::kMedium, !options.fast());
     const auto& stats = raykiln::render::build_stats(*tree_);
     std::printf("%-9s %zu triangles; build %.3f s, Embree HIGH %.3f s, MEDIUM %.3f s: %.2f of HIGH; "
                 "%.0f bytes/triangle\n",
@@ -137,7 +138,9 @@ class Comparison {
     std::vector<Traversal> kernels;
     for (const std::string& kernel : options_.kernels) {
       const auto traversal = raykiln::render::traversal_named(kernel);
-      if (traversal && raykiln::render::is_available(*traversal)) kernels.push_back(*traversal);
+      if (!traversal || !raykiln::render::is_available(*traversal)) continue;
+      kernels.push_back(raykiln::render::with_test(*traversal, options_.fast() ? TriangleTest::kFast
+                                                                               : TriangleTest::kWatertight));
     }
     return kernels;
   }
@@ -176,7 +179,7 @@ class Comparison {
     }
     const double ratio = median(turns);
     const double mrays = static_cast<double>(rays) / median(one.seconds) / 1e6;
-    std::printf("%-9s %-10s %-9s %8zu %8.3f %6.2f %8zu %6zu\n", scene_.name, kind,
+    std::printf("%-9s %-10s %-11s %8zu %8.3f %6.2f %8zu %6zu\n", scene_.name, kind,
                 one.name.c_str(), rays, mrays, ratio, hits, differing);
     std::fflush(stdout);
     if (in_mean()) ratios_[one.name + " " + std::string(kind).substr(0, 7)].push_back(ratio);
@@ -208,8 +211,8 @@ int run(const Options& options) {
   if (!library) return 2;
   std::printf("Embree %s, robust %s; ratio: rate over that of the faster of HIGH and MEDIUM; apart: "
               "rays where the answer is not that of our last kernel\n"
-              "scene     rays of    of            rays   Mray/s  ratio     hits  apart\n",
-              library->version().c_str(), options.fast ? "off" : "on");
+              "scene     rays of    of              rays   Mray/s  ratio     hits  apart\n",
+              library->version().c_str(), options.fast() ? "off" : "on");
   Ratios ratios;
   std::vector<JsonObject> results;
   for (const BenchScene& scene : raykiln::bench::kBenchScenes) {
@@ -236,7 +239,7 @@ int run(const Options& options) {
   if (!options.json.empty()) {
     auto report = raykiln::bench::conditions("bench_embree", 1, options.seed);
     report.add("embree", library->version())
-        .add("robust", std::string(options.fast ? "off" : "on"))
+        .add("robust", std::string(options.fast() ? "off" : "on"))
         .add("rays_per_call", static_cast<std::uint64_t>(options.stream))
         .add("leaf_width", static_cast<std::uint64_t>(options.params.leaf_width))
         .add_raw("results", raykiln::bench::json_list(results));
@@ -269,7 +272,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
   app.add_option("--repeat", options.repeat, "turns")->check(CLI::Range(1, 1000));
   app.add_option("--seed", options.seed, "of the rays");
-  app.add_flag("--fast", options.fast, "Embree without its robust flag");
+  app.add_option("--test", options.test,
+                 "watertight: ours beside Embree with its robust flag; fast: both without")
+      ->check(CLI::IsMember({"watertight", "fast"}));
   app.add_option("--json", options.json, "write the figures to this file");
   CLI11_PARSE(app, argc, argv);
   return run(options);

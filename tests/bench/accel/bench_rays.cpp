@@ -19,14 +19,21 @@ using raykiln::render::Occlusion;
 using raykiln::render::Ray;
 using raykiln::render::Traversal;
 using raykiln::render::TraversalCounters;
+using raykiln::render::TriangleTest;
 
 struct Options {
-  std::string scene, rays, mode = "closest", kernel = "tree", out, json;
+  std::string scene, rays, mode = "closest", kernel = "tree", test = "watertight", out, json;
   std::size_t triangles = 1'000'000, stream = 4096;
   int repeat = 3;
   std::uint64_t seed = 1;
   raykiln::render::BuildParams params;
 };
+
+Traversal traversal_of(const Options& options) {
+  const bool fast = options.test == "fast";
+  return raykiln::render::with_test(*raykiln::render::traversal_named(options.kernel),
+                                    fast ? TriangleTest::kFast : TriangleTest::kWatertight);
+}
 
 /// What is written for a ray: 8 bytes.
 struct Answer {
@@ -55,7 +62,7 @@ bool write_answers(const std::string& path, const std::vector<Answer>& answers) 
 
 void trace(const KdTree& tree, const Options& options, std::span<const Ray> rays,
            std::span<Answer> answers, TraversalCounters& counters) {
-  const Traversal traversal = *raykiln::render::traversal_named(options.kernel);
+  const Traversal traversal = traversal_of(options);
   if (options.mode == "any") {
     std::vector<Occlusion> found(rays.size());
     raykiln::render::any_hits(tree, rays, found, traversal, &counters);
@@ -92,7 +99,7 @@ int run(const Options& options) {
     }
     seconds = std::min(seconds, watch.elapsed().cpu);
   }
-  const auto used = raykiln::render::resolve(*raykiln::render::traversal_named(options.kernel));
+  const auto used = raykiln::render::resolve(traversal_of(options));
   const auto hits = std::count_if(answers.begin(), answers.end(),
                                   [](const Answer& a) { return a.id != kNoHit; });
   auto report = raykiln::bench::conditions("bench_rays", 1, options.seed);
@@ -127,6 +134,8 @@ int main(int argc, char** argv) {
   app.add_option("--mode", options.mode, "closest or any")->check(CLI::IsMember({"closest", "any"}));
   app.add_option("--kernel", options.kernel, "tree stands for the fastest available")
       ->check(CLI::IsMember({"tree", "scalar", "avx2", "avx512", "brute"}));
+  app.add_option("--test", options.test, "of triangles: watertight, or fast, in float alone")
+      ->check(CLI::IsMember({"watertight", "fast"}));
   app.add_option("--out", options.out, "file for (t, id)");
   app.add_option("--triangles", options.triangles, "of a generated mesh, about")
       ->check(CLI::Range(std::size_t{2}, std::size_t{100'000'000}));
