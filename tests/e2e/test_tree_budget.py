@@ -90,7 +90,7 @@ def test_quotes_extensions_batches_and_restarts_keep_it(launch):
     assert api.state(longer)["request"]["tree"] == tree
     settings = [{"width": 32, "height": 24, "stop": {"samples": 4}, "tree": tree, "name": "narrow"},
                 {"width": 32, "height": 24, "stop": {"samples": 4}, "tree": {"max_bytes": 1}, "name": "none"}]
-    batch = api.post("/v1/batches", {"scenes": [{"scene": scene, "settings": settings}]}).json()["id"]
+    batch = api.post("/v1/batches", {"scenes": [{"scene": scene, "name": "hair", "settings": settings}]}).json()["id"]
     api.wait_until(longer, lambda job: job["state"] == "rendering")
     assert api.daemon.stop() == 0
     api.daemon.start()
