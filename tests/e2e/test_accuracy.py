@@ -47,9 +47,12 @@ def test_the_curve_of_a_job(api, samples, done):
     assert short["points"][-1]["error"] == done["accuracy"]["error"]
     assert short["target"] is None and short["seconds_to_target"] is None
 
-    request = {"width": 32, "height": 24, "stop": {"seconds": 1.5 * SLOW, "error": 0.0001}}
-    job = api.wait(api.submit(samples["box"], **request).json()["id"])
-    curve = api.json(f"/v1/jobs/{job['id']}/accuracy")
+    for time in (1.5, 6, 24):  # until a busy machine has seen the error fall
+        request = {"width": 32, "height": 24, "stop": {"seconds": time * SLOW, "error": 0.0001}}
+        job = api.wait(api.submit(samples["box"], **request).json()["id"])
+        curve = api.json(f"/v1/jobs/{job['id']}/accuracy")
+        if len(curve["points"]) >= 4 and curve["forecasts"]:
+            break
     seconds = [point["render_seconds"] for point in curve["points"]]
     assert len(seconds) >= 4 and seconds == sorted(seconds)
     assert curve["points"][0]["error"]["value"] > curve["points"][-1]["error"]["value"]

@@ -322,8 +322,11 @@ def test_accuracy_refuses_what_would_take_for_ever(folder):
 
 
 def test_a_quote_is_bought_by_extending_it(api, to, folder, tmp_path):
-    done = raykiln("quote", folder, *to, "--size", "16x12", "--pilot-seconds", 0.3)
-    assert done.returncode == 0, done.stderr
+    for seconds in (0.3, 2, 10, 50):  # until a busy machine has had the time to learn something
+        done = raykiln("quote", folder, *to, "--size", "16x12", "--pilot-seconds", seconds)
+        assert done.returncode == 0, done.stderr
+        if "error 1 %" in done.stdout:
+            break
     assert "error 1 %" in done.stdout and "raykiln extend" in done.stdout
     quote = json.loads(raykiln("quote", folder, *to, "--size", "16x12", "--pilot-seconds", 0.2, "--json").stdout)
     more = int(quote["pilot"]["samples"]) + 100

@@ -101,12 +101,16 @@ def test_a_completed_job_goes_on_to_the_same_picture(api, samples):
 
 
 def test_a_quote_has_prices_that_hold_and_its_samples_are_kept(api, samples):
-    body = {"scene": samples["box"], **TINY, "pilot_seconds": 1.0 * SLOW}
-    answer = api.post("/v1/quotes", body)
-    assert answer.headers["Location"] == f"/v1/quotes/{answer.json()['id']}"
-    pilot = api.wait(answer.json()["id"])
-    quote = api.get(answer.headers["Location"]).json()
-    assert quote["state"] == "completed" and quote["pilot"]["samples"] > 64
+    for seconds in (0.4, 2, 10, 50):  # until a busy machine has had the time to learn something
+        body = {"scene": samples["box"], **TINY, "pilot_seconds": seconds * SLOW}
+        answer = api.post("/v1/quotes", body)
+        assert answer.headers["Location"] == f"/v1/quotes/{answer.json()['id']}"
+        pilot = api.wait(answer.json()["id"])
+        quote = api.get(answer.headers["Location"]).json()
+        assert quote["state"] == "completed"
+        if quote["error"] and quote["pilot"]["samples"] > 128:
+            break
+    assert quote["pilot"]["samples"] > 128
     prices = quote["prices"]
     assert [price["error"] for price in prices] == [0.1, 0.05, 0.02, 0.01, 0.005]
     assert all(p["seconds"]["low"] <= p["seconds"]["value"] <= p["seconds"]["high"] for p in prices)

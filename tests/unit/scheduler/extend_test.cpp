@@ -90,7 +90,10 @@ TEST_F(Extend, BeginsAnewWithTheSamePictureWhenTheFilmIsGone) {
 
 // Tiles that time has ended at different samples catch up.
 TEST_F(Extend, OfATimedJobIsWholeAgain) {
-  const JobSnapshot timed = rendered({.samples = 1'000'000, .seconds = 1.0}, 8);
+  JobSnapshot timed;
+  for (double seconds = 0.2; seconds < 60.0 && timed.progress.samples_per_pixel < 32.0; seconds *= 4.0) {  // of a busy machine
+    timed = rendered({.samples = 1'000'000, .seconds = seconds}, 8);
+  }
   std::uint64_t most = static_cast<std::uint64_t>(timed.progress.samples_per_pixel);
   for (const std::uint64_t samples : timed.tile_samples) most = std::max(most, samples);
   most += 100;
