@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <stdexcept>
 
 #include "sah_sweep.hpp"
 
@@ -139,6 +140,8 @@ void add_counts(const BuildStats& counts, BuildStats& stats) {
   stats.budget_reached = stats.budget_reached || counts.budget_reached;
 }
 
+constexpr std::size_t kMaxIndices = std::size_t{1} << 30;  // nodes keep 30 bits of an index
+
 void add_shape(const BuildStats& part, BuildStats& stats) {
   stats.inner_nodes += part.inner_nodes;
   stats.leaves += part.leaves;
@@ -163,6 +166,9 @@ bool lay_out(BuildContext& context, Subtree& root, KdTree& tree) {
     all.blocks += extents[i].blocks;
     built += root.linked[i]->bytes();
     add_counts(root.linked[i]->counts, tree.stats);
+  }
+  if (2 + all.nodes > kMaxIndices || all.blocks > kMaxIndices) {
+    throw std::length_error("kd-tree: over 2^30 nodes or blocks");
   }
   tree.nodes.assign(2 + all.nodes, make_leaf(0, 0));
   if (tree.params.leaf_width == 16) {

@@ -1,5 +1,8 @@
 #include "raykiln/workers/scene_tree.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "raykiln/render/limited_tree.hpp"
 
 namespace raykiln::server {
@@ -8,6 +11,16 @@ render::BuildParams build_params(const TreeBudget& budget) {
   render::BuildParams params;
   params.max_duplication = budget.references_per_triangle;
   return params;
+}
+
+std::uint64_t tree_byte_limit(const render::Scene& scene, const TreeBudget& budget) {
+  constexpr std::uint64_t kFree = std::uint64_t{1} << 30U;
+  const std::uint64_t asked = budget.max_bytes.value_or(0);
+  const double usual = TreeBudget{}.references_per_triangle;
+  if (budget.references_per_triangle <= usual) return asked;
+  const auto least = static_cast<double>(render::least_tree_bytes(scene, build_params(budget)));
+  const std::uint64_t most = std::max(kFree, static_cast<std::uint64_t>(std::ceil(usual * least)));
+  return asked == 0 ? most : std::min(asked, most);
 }
 
 Status check_tree_budget(const render::Scene& scene, const TreeBudget& budget) {
@@ -24,7 +37,7 @@ Status check_tree_budget(const render::Scene& scene, const TreeBudget& budget) {
 std::shared_ptr<const render::KdTree> build_tree(const render::Scene& scene, const TreeBudget& budget,
                                                  render::TaskRunner& runner) {
   render::BuildLimits limits;
-  limits.max_bytes = budget.max_bytes.value_or(0);
+  limits.max_bytes = tree_byte_limit(scene, budget);
   return render::build_scene_tree(scene, build_params(budget), runner, limits);
 }
 

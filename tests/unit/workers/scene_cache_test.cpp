@@ -6,6 +6,7 @@
 #include <future>
 
 #include "raykiln/render/limited_tree.hpp"
+#include "raykiln/workers/scene_tree.hpp"
 #include "support/fake_intake.hpp"
 #include "support/memory_store.hpp"
 #include "support/temp_directory.hpp"
@@ -186,6 +187,20 @@ TEST_F(SceneCacheTest, TooFewBytesAreRefusedWithWhatIsNeeded) {
   EXPECT_FALSE(prepared(0, budget_of(4.0, least - 1)));
   EXPECT_LE(hold(0, budget_of(4.0, least)).tree.stats.live_bytes_peak, least);
   EXPECT_EQ(cache->state(ids[0], budget_of(4.0, 1)), CacheState::kAbsent);
+}
+
+TEST(TreeByteLimit, BoundsWhatManyReferencesMayTake) {
+  const render::Scene tiny = tiny_scene(0.5F, 1.0F);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(4.0)), 0U);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(4.0, 5000)), 5000U);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0)), kGiB);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0, 5000)), 5000U);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0, 5 * kGiB)), kGiB);
+  render::Scene large = tiny;
+  large.mesh.triangles.resize(2'000'000, large.mesh.triangles.at(0));
+  const std::uint64_t least = render::least_tree_bytes(large, build_params({}));
+  ASSERT_GT(4 * least, kGiB);
+  EXPECT_EQ(tree_byte_limit(large, budget_of(64.0)), 4 * least);
 }
 
 TEST_F(SceneCacheTest, ForgetGivesBytesBack) {

@@ -1,6 +1,7 @@
 // The tree of a scene within the budget of a job.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "raykiln/base/result.hpp"
@@ -11,6 +12,11 @@ namespace raykiln::server {
 
 /// The numbers that shape the tree.
 [[nodiscard]] render::BuildParams build_params(const TreeBudget& budget);
+
+/// Most bytes that building the tree may take; 0: no limit. Asking for more references than by default
+/// gives as many as 1 GiB or what the default may need at worst, whichever is more, holds for certain:
+/// no request takes the server's memory.
+[[nodiscard]] std::uint64_t tree_byte_limit(const render::Scene& scene, const TreeBudget& budget);
 
 /// "tree_too_large" at "/tree/max_bytes" where the builder could not keep to the bytes for certain.
 [[nodiscard]] Status check_tree_budget(const render::Scene& scene, const TreeBudget& budget);
