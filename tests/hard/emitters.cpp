@@ -79,6 +79,46 @@ TEST(L07, SquareCloseToTheReceiver) {
   }
 }
 
+/// Six triangles at random that shine to both sides, of size `size` above a floor, both around `reach` wide and high.
+SmallScene splinters_over_floor(Members& members, double size, double reach) {
+  SmallScene s;
+  s.level_square(static_cast<float>(reach), 0.0F, s.material(matte(0.8F)));
+  const auto lamp = s.material(matte(0.0F, 1.0F));
+  const Vec3d centre(members.between(-0.1, 0.1) * reach, members.between(-0.1, 0.1) * reach, 0.3 * reach);
+  const auto corner = [&] {
+    const double x = members.between(-1.0, 1.0), y = members.between(-1.0, 1.0), z = members.between(-1.0, 1.0);
+    return Vec3f(centre + size * Vec3d(x, y, z));
+  };
+  for (int i = 0; i < 6; ++i) {
+    const Vec3f a = corner(), b = corner(), c = corner();
+    s.triangle(a, b, c, lamp);
+    s.triangle(a, c, b, lamp);
+  }
+  s.look({0, 0, 0.2 * reach}, {0, 0, 0}, {0, 1, 0}, 1.2);
+  return s;
+}
+
+// Ends of shadow rays keep a distance that is proved for the watertight test: the float one moves triangles by more.
+TEST(L07, FarLampsByTheFastTest) {
+  Members members(1007);
+  Row row("L07", "splinters of 1e-3 to 1 that shine at 1 to 3e4; without watertight_triangles" + members.note(),
+          "the light of the watertight test within 4 sigma", "physical");
+  double worst = 0.0;
+  for (const double size : {1e-3, 0.1, 1.0}) {
+    for (const double reach : {1.0, 30.0, 1e3, 3e4}) {
+      const SmallScene s = splinters_over_floor(members, size, reach);
+      RenderSettings settings = square_settings(16, 1, kPhysicalModel);
+      const Measured watertight = measure(s.scene(), settings, 64);
+      settings.effects.without.insert(render::Effect::kWatertightTriangles);
+      const Measured fast = measure(s.scene(), settings, 64);
+      EXPECT_GT(watertight.mean, 0.0);
+      EXPECT_NEAR(fast.mean, watertight.mean, 4.0 * watertight.standard_error) << size << ' ' << reach;
+      worst = std::max(worst, relative_error(fast.mean, watertight.mean));
+    }
+  }
+  row.measured("largest relative difference", worst);
+}
+
 SmallScene walled_floor() {
   SmallScene s;
   s.level_square(1.0F, 0.0F, s.material(matte(0.8F)));
