@@ -177,7 +177,7 @@ export class JobPage {
     this.statistics_.update([...statistic_rows(job), ...replays], replays.map(([name]) => name));
     this.settings_.update(setting_rows(job));
     const scene = state.scenes[job.scene];
-    this.scene_.update(scene ? [...report(scene), ...tree_rows(scene.tree)] : [["Id", job.scene.slice(0, 16)]]);
+    this.scene_.update(scene ? report(scene) : [["Id", job.scene.slice(0, 16)]]);
   }
 
   private meter(job: Job): void {
@@ -332,9 +332,4 @@ function setting_rows(job: Job): [string, string][] {
   rows.push(["Job", job.id]);
   if (job.continues) rows.push(["Continues", `${job.continues.job}, ${count(job.continues.samples)} samples taken over`]);
   return rows;
-}
-
-function tree_rows(tree: Record<string, number> | null): [string, string][] {
-  return Object.entries(tree ?? {}).map(([key, value]) =>
-    [`Tree: ${label_of(key).toLowerCase()}`, statistic(key, value)]);
 }
