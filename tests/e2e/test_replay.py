@@ -102,3 +102,14 @@ def test_a_scene_that_is_not_in_memory_is_made_ready_first(launch):
     assert done.returncode == 0 and json.loads(done.stdout) == before
     api.delete(scene)
     problem(replayed(api, job, 5, 5), 404, "scene_not_found")
+
+
+def test_a_job_without_a_tree_says_so_at_once(api):
+    scene = api.scene(scenes.box_zip("no tree"))
+    job = api.job(scene, **ASKED, tree={"max_bytes": 1})
+    error = api.wait(job)["error"]
+    assert error["code"] == "tree_too_large"
+    told = problem(replayed(api, job, 5, 5), 422, "tree_too_large")
+    assert (told["detail"], told["where"]) == (error["detail"], "/tree/max_bytes") and "or more" in told["detail"]
+    done = raykiln("replay", job, 5, 5, 0, "--server", api.daemon.url)
+    assert done.returncode == 7 and "tree_too_large" in done.stderr and "--tree-bytes" in done.stderr

@@ -37,6 +37,12 @@ struct Gathering {
   std::vector<Reply<JobImagePtr>> waiting;
 };
 
+/// A scene that is made ready because a client asked for it; or why it was not, until the client asks again.
+struct Preparing {
+  std::unique_ptr<PrepareTicket> ticket;
+  std::optional<Error> fault{};
+};
+
 /// A job that has not ended.
 struct LiveJob {
   JobSnapshot snapshot;
@@ -210,7 +216,7 @@ class Scheduler::Core {
   KeptFilms kept_;
   std::vector<JobImagePtr> images_;  ///< the most recent last
   /// By scene and budget, asked for by clients.
-  std::map<std::pair<std::string, std::string>, std::unique_ptr<PrepareTicket>> prepares_;
+  std::map<std::pair<std::string, std::string>, Preparing> prepares_;
   std::map<int, SteadyTime> worker_free_since_;
   std::size_t active_ = 0;
   std::uint64_t active_film_bytes_ = 0;

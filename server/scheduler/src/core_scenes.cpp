@@ -91,19 +91,35 @@ void Scheduler::Core::delete_scene(const std::string& id, const Reply<std::monos
   reply(std::move(deleted));
 }
 
-/// Makes scene and tree ready, if they are not and nobody is at it for a client yet.
+/// Makes scene and tree ready, if they are not and nobody is at it for a client yet. What went wrong the last time
+/// is told once; who asks again after that has it tried again.
 Status Scheduler::Core::begin_preparing(const std::string& id, const TreeBudget& budget) {
   if (!accepting_) {
     return Error{ErrorKind::kUnavailable, "shutting_down", "the server is stopping", "", 5};
   }
   const auto key = std::pair(id, tree_budget_text(budget));
-  if (parts_.cache.state(id, budget) == CacheState::kReady || prepares_.contains(key)) return success();
+  if (parts_.cache.state(id, budget) == CacheState::kReady) return success();
+  if (const auto known = prepares_.find(key); known != prepares_.end()) {
+    if (!known->second.fault) return success();
+    const Error fault = *known->second.fault;
+    prepares_.erase(known);
+    return fault;
+  }
+  if (prepares_.size() >= config_.workers.max_pending_imports) {
+    std::erase_if(prepares_, [](const auto& entry) { return entry.second.fault.has_value(); });  // nobody came back
+  }
   if (prepares_.size() >= config_.workers.max_pending_imports) {
     return Error{ErrorKind::kTooMany, "too_many_uploads", "too many scenes are being prepared", "", 5};
   }
-  prepares_[key] = parts_.cache.prepare(id, budget, {}, [this, strand = strand_, key](const Result<ReadyScene>&) {
-    post_on(strand, this, [this, key] { prepares_.erase(key); });
-  });
+  auto done = [this, strand = strand_, key](const Result<ReadyScene>& scene) {
+    post_on(strand, this, [this, key, fault = scene ? std::nullopt : std::optional(scene.error())] {
+      const auto mine = prepares_.find(key);
+      if (mine == prepares_.end()) return;  // the scene was deleted
+      if (fault) mine->second = {nullptr, fault};
+      else prepares_.erase(mine);
+    });
+  };
+  prepares_[key].ticket = parts_.cache.prepare(id, budget, {}, std::move(done));
   return success();
 }
 
@@ -140,6 +156,8 @@ void Scheduler::Core::replay_inputs(const JobId& id, const Reply<ReplayInputs>& 
                                                        : scene_in_memory(request.scene, request.tree);
   if (!scene) {
     if (auto record = parts_.store.scene(request.scene); !record) return reply(record.error());
+    // That would come out again, of as much work: the job has said it with the remedy.
+    if (job->error && job->error->code == "tree_too_large") return reply(*job->error);
     if (auto begun = begin_preparing(request.scene, request.tree); !begun) return reply(begun.error());
     return reply(Error{ErrorKind::kUnavailable, "scene_not_ready",
                        "scene and tree of the job are being made ready", request.scene, 1});

@@ -151,5 +151,45 @@ TEST_F(TreeBudgets, ReplaysUseTheTreeOfTheirJob) {
   EXPECT_EQ(counted("raykiln_scene_imports_total"), 1.0);
 }
 
+/// The job knows already that it will never have a tree: nobody waits for one.
+TEST_F(TreeBudgets, AReplaySaysAtOnceWhyItsJobHasNoTree) {
+  const JobSnapshot failed = ended(job(4.0, least_ - 1));
+  const auto inputs = [&] {
+    return answer_of<ReplayInputs>([&](auto reply) { rig_->scheduler->replay_inputs(failed.id, reply); });
+  };
+  for (const bool restarted : {false, true}) {
+    if (restarted) restart();
+    const double before = counted("raykiln_scene_imports_total");
+    const auto refused = inputs();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, "tree_too_large");
+    EXPECT_EQ(refused.error().kind, ErrorKind::kTooLarge);
+    EXPECT_EQ(refused.error().where, "/tree/max_bytes");
+    EXPECT_EQ(refused.error().message, failed.error->message);
+    EXPECT_EQ(counted("raykiln_scene_imports_total"), before) << "nothing was tried again";
+  }
+}
+
+/// A scene that cannot be read any more: who waits for it is told, and not asked to wait for ever.
+TEST_F(TreeBudgets, AReplayIsToldWhyItsSceneCannotBePrepared) {
+  const JobSnapshot done = ended(job(2.0));
+  ASSERT_EQ(done.state, JobState::kCompleted);
+  restart();
+  const auto readable = std::exchange(rig_->intake.make, [](const BlobFile&) -> render::Scene { throw std::runtime_error("gone bad"); });
+  const auto inputs = [&] {
+    auto replay = answer_of<ReplayInputs>([&](auto reply) { rig_->scheduler->replay_inputs(done.id, reply); });
+    for (int i = 0; i < 10'000 && !replay && replay.error().code == "scene_not_ready"; ++i) {
+      std::this_thread::sleep_for(1ms);
+      replay = answer_of<ReplayInputs>([&](auto reply) { rig_->scheduler->replay_inputs(done.id, reply); });
+    }
+    return replay;
+  };
+  const auto refused = inputs();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "gone bad");
+  rig_->intake.make = readable;
+  EXPECT_TRUE(inputs()) << "told once, then tried again";
+}
+
 }  // namespace
 }  // namespace raykiln::tests

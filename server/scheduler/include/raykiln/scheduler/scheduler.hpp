@@ -66,7 +66,8 @@ class Scheduler {
   /// layers (which a picture stored by an older version lacks).
   void image(JobId id, std::string layer, Reply<JobImagePtr> reply);
   /// What the job is rendered with. While its scene is not in memory: "scene_not_ready"
-  /// (kUnavailable), and preparing it has begun; "scene_not_found" when it was deleted.
+  /// (kUnavailable), and preparing it has begun; "scene_not_found" when it was deleted; what the job
+  /// failed with where that was "tree_too_large"; and once each time it goes wrong, why it cannot be prepared.
   void replay_inputs(JobId id, Reply<ReplayInputs> reply);
 
   // Scenes. Upload: store.begin_upload(), append() on the caller's thread, finish(), add_scene().
