@@ -57,6 +57,7 @@ def alarm(comparison):
     return noise["strongest"]["family_chance"] <= STATED or noise["render_not_finite"] != noise["reference_not_finite"]
 
 
+@pytest.mark.one_thread
 @pytest.mark.long
 def test_alarms_and_power(tmp_path):
     same = write(tmp_path / "same")

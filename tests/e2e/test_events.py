@@ -8,12 +8,12 @@ import pytest
 
 from support import scenes
 from support.api import FINAL
-from support.daemon import SLOW
+from support.daemon import SLOW, fewer
 from support.patience import PATIENCE, eventually, least_of_turns
 
 
 def test_the_first_event_is_a_full_snapshot_and_ids_rise(api, samples):
-    job = api.job(samples["grid"], width=256, height=256, stop={"samples": 32})
+    job = api.job(samples["grid"], width=256, height=256, stop={"samples": fewer(32)})
     with api.events(job) as stream:
         events = list(stream.events())
     assert stream.headers["content-type"].split(";")[0] == "text/event-stream"

@@ -7,10 +7,10 @@ import numpy as np
 
 from support import scenes
 from support.api import Api
-from support.daemon import SLOW, Daemon
+from support.daemon import SLOW, Daemon, fewer
 from support.image_files import read_exr
 
-JOB = {"width": 320, "height": 240, "stop": {"samples": 64}, "seed": 11}
+JOB = {"width": 320, "height": 240, "stop": {"samples": fewer(64)}, "seed": 11}
 
 
 def restarted(api) -> Api:

@@ -2,11 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <ctime>
+#include <cstdio>
 
 #include "effects_json.hpp"
 #include "job_request_value.hpp"
 #include "problem_value.hpp"
+#include "raykiln/base/calendar.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -162,13 +163,12 @@ std::string rfc3339(WallTime time) {
   using std::chrono::milliseconds;
   const auto since = std::chrono::floor<milliseconds>(time.time_since_epoch());
   const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
-  const std::time_t whole = seconds.count();
-  std::tm utc{};
-  gmtime_r(&whole, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S.", &utc);
+  const UtcTime utc(time);
+  std::array<char, 32> date{};
+  std::snprintf(date.data(), date.size(), "%04d-%02u-%02uT", static_cast<int>(utc.date.year()),
+                static_cast<unsigned>(utc.date.month()), static_cast<unsigned>(utc.date.day()));
   const std::string thousandths = std::to_string(1000 + (since - seconds).count());
-  return text.data() + thousandths.substr(1) + 'Z';
+  return date.data() + utc.clock() + '.' + thousandths.substr(1) + 'Z';
 }
 
 std::string job_json(const JobSnapshot& job) { return dump(job_value(job)); }

@@ -1,9 +1,9 @@
 #include "raykiln/http/response_text.hpp"
 
 #include <array>
-#include <ctime>
 
 #include "raykiln/api/problem.hpp"
+#include "raykiln/base/calendar.hpp"
 
 namespace raykiln::server {
 namespace {
@@ -27,15 +27,11 @@ std::string http_date(std::chrono::system_clock::time_point now) {
   static constexpr std::array<const char*, 7> kDays{"Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"};
   static constexpr std::array<const char*, 12> kMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
                                                        "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 64> tail{};
-  std::strftime(tail.data(), tail.size(), "%Y %H:%M:%S GMT", &utc);
-  std::string text = kDays[static_cast<std::size_t>(utc.tm_wday)];
-  text.append(", ").append(std::to_string(100 + utc.tm_mday), 1).append(" ");
-  text.append(kMonths[static_cast<std::size_t>(utc.tm_mon)]).append(" ").append(tail.data());
-  return text;
+  const UtcTime utc(now);
+  std::string text = kDays[utc.weekday.c_encoding()];
+  text.append(", ").append(std::to_string(100 + static_cast<unsigned>(utc.date.day())), 1).append(" ");
+  text.append(kMonths[static_cast<unsigned>(utc.date.month()) - 1]).append(" ");
+  return text + std::to_string(static_cast<int>(utc.date.year())) + ' ' + utc.clock() + " GMT";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "raykiln/base/calendar.hpp"
 #include "raykiln/base/file_name.hpp"
 #include "raykiln/base/ids.hpp"
 #include "raykiln/base/log.hpp"
@@ -13,6 +14,17 @@
 
 namespace raykiln::server {
 namespace {
+
+TEST(UtcTime, KnowsTheCalendar) {
+  using namespace std::chrono;
+  const UtcTime leap(sys_days{year{2024} / 2 / 29} + 23h + 59min + 59s + 999ms);
+  EXPECT_EQ(leap.date, year{2024} / 2 / 29);
+  EXPECT_EQ(leap.weekday, Thursday);
+  EXPECT_EQ(leap.clock(), "23:59:59");
+  const UtcTime before(system_clock::time_point{} - 1ms);
+  EXPECT_EQ(before.date, year{1969} / 12 / 31);
+  EXPECT_EQ(before.clock(), "23:59:59");
+}
 
 TEST(Ids, AreOpaqueUrlSafeAndDifferent) {
   std::set<std::string> seen;
