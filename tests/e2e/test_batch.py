@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from support import scenes
-from support.daemon import ROOT, SLOW
+from support.daemon import ROOT, SLOW, fewer
 from support.junit import read_junit
 from support.patience import least_of_turns
 from support.proxy import Proxy
@@ -158,12 +158,14 @@ def test_an_unchanged_batch_is_reused_and_quick(launch, tmp_path):
     names = [f"s{n}" for n in range(20)]
     for name in names:
         write_scene(tmp_path / "scenes", name)
-    path = plan(tmp_path, names, max_active=16)
+    samples = fewer(32)
+    path = plan(tmp_path, names, max_active=16,
+                defaults={"width": 48, "height": 36, "stop": {"samples": samples}, "seed": 1})
     first, report = run(path, "--server", api.daemon.url)
     assert first.returncode == 11 and report["counts"]["reused"] == 0
     assert raykiln("approve", tmp_path / "report", "--all").returncode == 0
     rendered, asked = counter(api, "raykiln_samples_total"), requests_of(api)
-    assert rendered == 20 * 48 * 36 * 32
+    assert rendered == 20 * 48 * 36 * samples
     begun = time.monotonic()
     second, report = run(path, "--server", api.daemon.url)
     seconds = time.monotonic() - begun

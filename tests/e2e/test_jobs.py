@@ -161,8 +161,9 @@ def test_priority_shares_the_workers(launch):
     """Both render at once and the one with ten times the weight gets ahead, however late it came."""
     api = launch(workers=1)
     scene = api.scene(scenes.grid_zip(40))
-    low = api.job(scene, **LONG, priority=10)
-    high = api.job(scene, **LONG, priority=100)
+    endless = {"width": 128, "height": 128, "stop": {"samples": 1048576}}
+    low = api.job(scene, **endless, priority=10)
+    high = api.job(scene, **endless, priority=100)
     done = lambda job: api.state(job)["progress"]["samples_done"]
     eventually(lambda: done(high) >= 16 and 0 < 2 * done(low) < done(high), lambda: f"{done(low)} and {done(high)}")
     for job in (low, high):
