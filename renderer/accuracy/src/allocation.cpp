@@ -13,8 +13,6 @@ namespace {
 constexpr double kShareOfNeighbours = 0.25;
 constexpr int kBisections = 60;  ///< for the one factor that all wishes are multiplied by
 
-int cells_across(const Film& film) { return (film.width() + kCellSide - 1) / kCellSide; }
-
 /// sqrt(V) of a cell and the variance of that: of V through the slope of the root.
 struct Wish {
   double value = 0.0, variance = 0.0;
@@ -138,11 +136,11 @@ std::vector<std::uint64_t> place_samples(const std::vector<CellNoise>& cells, in
 }
 
 std::vector<std::uint64_t> allocate_samples(const Film& film, double mean_samples, std::uint64_t most) {
-  return place_samples(cell_noise(film), cells_across(film), mean_samples, most);
+  return place_samples(cell_noise(film), cells_across(film.width()), mean_samples, most);
 }
 
 std::vector<std::uint64_t> cell_samples(const Film& film) {
-  const int across = cells_across(film), down = (film.height() + kCellSide - 1) / kCellSide;
+  const int across = cells_across(film.width()), down = cells_across(film.height());
   std::vector<std::uint64_t> samples(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
   std::size_t i = 0;
   for (int y = 0; y < film.height(); ++y) {

@@ -205,10 +205,7 @@ void read_tree(FieldReader& reader, const JobLimits& limits, Errors& errors, Job
   FieldReader fields(*value, reader.pointer_to("tree"), errors);
   if (const auto references = fields.number("references_per_triangle")) {
     request.tree.references_per_triangle = *references;
-    if (!(*references >= 1.0 && *references <= limits.max_tree_references)) {
-      fields.error("references_per_triangle", "out_of_range",
-                   "must be from 1 to " + std::to_string(static_cast<long long>(limits.max_tree_references)));
-    }
+    if (const auto why = references_error(*references, limits)) fields.error("references_per_triangle", "out_of_range", *why);
   }
   request.tree.max_bytes = fields.natural("max_bytes", {1, limits.max_tree_bytes});
   fields.finish();

@@ -141,9 +141,8 @@ std::optional<Error> branches_error(const JobRequest& r, const JobLimits& limits
 }
 
 std::optional<Error> tree_error(const TreeBudget& tree, const JobLimits& limits) {
-  if (!(tree.references_per_triangle >= 1.0 && tree.references_per_triangle <= limits.max_tree_references)) {
-    return wrong("/tree/references_per_triangle",
-                 "must be from 1 to " + std::to_string(static_cast<long long>(limits.max_tree_references)));
+  if (auto why = references_error(tree.references_per_triangle, limits)) {
+    return wrong("/tree/references_per_triangle", std::move(*why));
   }
   if (!tree.max_bytes) return std::nullopt;
   return outside<std::uint64_t>("/tree/max_bytes", *tree.max_bytes, 1, limits.max_tree_bytes);
@@ -239,6 +238,11 @@ std::optional<TextureFilter> texture_filter_named(std::string_view text) {
     if (name(value) == text) return value;
   }
   return std::nullopt;
+}
+
+std::optional<std::string> references_error(double references_per_triangle, const JobLimits& limits) {
+  if (references_per_triangle >= 1.0 && references_per_triangle <= limits.max_tree_references) return std::nullopt;
+  return "must be from 1 to " + std::to_string(static_cast<long long>(limits.max_tree_references));
 }
 
 std::string tree_budget_text(const TreeBudget& budget) {

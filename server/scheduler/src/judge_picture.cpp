@@ -48,7 +48,7 @@ Decision decide(const render::Film& film, const JobRequest& request) {
   auto mean = static_cast<std::uint64_t>(std::ceil(step * decision.error.mean_samples));
   const auto there = render::cell_samples(film);
   const auto cells = render::cell_noise(film);
-  const int across = (film.width() + render::kCellSide - 1) / render::kCellSide;
+  const int across = render::cells_across(film.width());
   const auto moves = [&] {
     for (std::size_t i = 0; i < there.size(); ++i) {
       const std::uint64_t wanted = decision.samples[i];

@@ -213,7 +213,7 @@ class Truths {
   }
   [[nodiscard]] std::vector<double> squares_of_cells(const std::vector<double>& picture, const std::vector<double>& truth) const {
     const double whole = std::accumulate(truth.begin(), truth.end(), 0.0) / static_cast<double>(truth.size());
-    const int across = (settings_.width + kCellSide - 1) / kCellSide, down = (settings_.height + kCellSide - 1) / kCellSide;
+    const int across = cells_across(settings_.width), down = cells_across(settings_.height);
     std::vector<double> squares(static_cast<std::size_t>(across * down));
     for (std::size_t i = 0; i < picture.size(); ++i) {
       const int pixel = static_cast<int>(i / 3), x = pixel % settings_.width, y = pixel / settings_.width;

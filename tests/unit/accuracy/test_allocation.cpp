@@ -12,6 +12,14 @@ namespace {
 using support::synthetic_film;
 using support::TestRandom;
 
+TEST(Allocation, CellsCoverTheSideAndNoMore) {
+  EXPECT_EQ(cells_across(1), 1);
+  EXPECT_EQ(cells_across(kCellSide), 1);
+  EXPECT_EQ(cells_across(kCellSide + 1), 2);
+  const Film film(2 * kCellSide + 1, kCellSide);
+  EXPECT_EQ(cell_noise(film).size(), static_cast<std::size_t>(cells_across(film.width()) * cells_across(film.height())));
+}
+
 TEST(Allocation, FollowsTheSquareRootOfTheNoise) {
   // Four cells in a row, and a fifth with 64 times their variance.
   const Film film = synthetic_film(80, 16, 64, 1, [](int x, int, TestRandom& random) {

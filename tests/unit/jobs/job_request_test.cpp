@@ -15,6 +15,16 @@ JobRequest good() {
   return request;
 }
 
+TEST(JobRequest, OneRangeOfReferencesForReaderAndRequest) {
+  JobLimits limits;
+  limits.max_tree_references = 8.0;
+  EXPECT_FALSE(references_error(1.0, limits) || references_error(8.0, limits));
+  for (const double wrong : {0.99, 8.01, -1.0, static_cast<double>(NAN)}) EXPECT_EQ(references_error(wrong, limits), "must be from 1 to 8");
+  JobRequest request = good();
+  request.tree.references_per_triangle = 9.0;
+  EXPECT_EQ(validate(request, limits).error().message, "must be from 1 to 8");
+}
+
 TEST(JobRequest, IsCheckedAgainstEveryLimit) {
   EXPECT_TRUE(validate(good(), {}));
   const std::pair<const char*, void (*)(JobRequest&)> rows[] = {

@@ -10,6 +10,8 @@ namespace raykiln::render {
 
 /// Edge of the cells in pixels, whatever the tiles of a job are.
 inline constexpr int kCellSide = 16;
+/// Cells along a side of a picture, the last of which may be cut.
+[[nodiscard]] constexpr int cells_across(int pixels) { return (pixels + kCellSide - 1) / kCellSide; }
 
 /// No cell has less than this part of the samples that the picture has on average. It bounds what a cell can
 /// lose whose samples have missed light so far, and with it the bias of choosing by the samples themselves.

@@ -102,6 +102,9 @@ struct JobRequest {
   bool reuse = false;           ///< a completed job whose picture is this one may stand in for it
 };
 
+/// What is wrong with so many references a triangle: "must be from 1 to 64"; nothing where they may be asked for.
+[[nodiscard]] std::optional<std::string> references_error(double references_per_triangle, const JobLimits& limits);
+
 /// Equal exactly for equal budgets: "4" or "4 1000000".
 [[nodiscard]] std::string tree_budget_text(const TreeBudget& budget);
 
