@@ -48,16 +48,6 @@ std::uint64_t bytes_of_reference(const BuildParams& params) {
          2 * (sizeof(KdNode) + sizeof(BuildNode));
 }
 
-// References a triangle that fit into max_bytes whatever the mesh is.
-double affordable_duplication(const BuildParams& params, const TriangleView& mesh, std::size_t n,
-                              std::uint64_t max_bytes) {
-  if (max_bytes == 0 || n == 0) return params.max_duplication;
-  const std::uint64_t left = max_bytes - std::min(max_bytes, mesh_bytes(mesh));
-  const double references =
-      static_cast<double>(left) / static_cast<double>(bytes_of_reference(params));
-  return std::clamp(references / static_cast<double>(n), 1.0, params.max_duplication);
-}
-
 void refuse_too_little(const TriangleView& mesh, const BuildParams& params,
                        const BuildLimits& limits) {
   const std::uint64_t least = least_bytes(mesh, params);
@@ -91,7 +81,7 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
   tree->stats.triangles = mesh.triangles.size();
   tree->stats.dropped_degenerate = root.dropped_degenerate;
   const std::size_t n = root.subtree.size();
-  const double duplication = affordable_duplication(context.params, mesh, n, limits.max_bytes);
+  const double duplication = affordable_duplication(mesh, context.params, limits);
   root.subtree.budget = static_cast<std::uint64_t>((duplication - 1.0) * static_cast<double>(n));
   tree->stats.leaf_cost = context.params.k_i * static_cast<double>(n);
   const int cap = depth_cap(context.params.max_depth, n);
@@ -108,6 +98,13 @@ std::shared_ptr<const KdTree> build_kdtree(const TriangleView& mesh, const Build
 
 std::uint64_t least_bytes(const TriangleView& mesh, const BuildParams& params) {
   return mesh_bytes(mesh) + mesh.triangles.size() * bytes_of_reference(params);
+}
+
+double affordable_duplication(const TriangleView& mesh, const BuildParams& params, const BuildLimits& limits) {
+  if (limits.max_bytes == 0 || mesh.triangles.empty()) return params.max_duplication;
+  const std::uint64_t left = limits.max_bytes - std::min(limits.max_bytes, mesh_bytes(mesh));
+  const double references = static_cast<double>(left) / static_cast<double>(bytes_of_reference(params));
+  return std::clamp(references / static_cast<double>(mesh.triangles.size()), 1.0, params.max_duplication);
 }
 
 const BuildStats& build_stats(const KdTree& tree) { return tree.stats; }

@@ -36,4 +36,8 @@ std::uint64_t least_tree_bytes(const Scene& scene, const BuildParams& params) {
   return least_bytes(triangles_of(scene), params);
 }
 
+double affordable_references(const Scene& scene, const BuildParams& params, const BuildLimits& limits) {
+  return affordable_duplication(triangles_of(scene), params, limits);
+}
+
 }  // namespace raykiln::render

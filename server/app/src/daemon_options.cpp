@@ -58,6 +58,10 @@ ParsedDaemon parse_daemon_options(int argc, const char* const* argv) {
       ->check(CLI::Range(0, 1024));
   app.add_option("--cache-bytes", config.workers.scene_cache_bytes, "scenes and trees kept in memory")
       ->transform(CLI::AsSizeValue(false));
+  app.add_option("--wide-tree-bytes", config.workers.wide_tree_bytes,
+                 "that building a tree may hold which has more references a triangle than by default;\n"
+                 "what a default tree may need is always allowed")
+      ->transform(CLI::AsSizeValue(false) & CLI::Range(std::uint64_t{1}, config.jobs.max_tree_bytes));
   app.add_option("--store-bytes", config.store.max_bytes, "most that the store may hold")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--film-bytes", config.scheduler.max_film_bytes, "pictures of all running jobs together")

@@ -255,7 +255,8 @@ Result<LocalPicture> render_locally(const ScenePackage& package, const JobReques
         progress({.stage = "building", .fraction = fraction, .elapsed_seconds = since()});
       },
       {});
-  auto tree = build_tree(*loaded->scene, request.tree, *runner);
+  const TreeBudget budget = settled_budget(*loaded->scene, request.tree, WorkerSettings().wide_tree_bytes);
+  auto tree = build_tree(*loaded->scene, budget, *runner);
   const double build_seconds = since() - build_begun;
   const render::BuildStats tree_stats = render::build_stats(*tree);
   const auto prepared = render::prepare(loaded->scene, std::move(tree));

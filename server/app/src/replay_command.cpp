@@ -86,7 +86,8 @@ ExitCode replay_of_scene(const CliOptions& options) {
   }
   if (auto fits = check_tree_budget(*loaded->scene, request.tree); !fits) return complain(fits.error());
   render::SerialTaskRunner runner;
-  const auto scene = render::prepare(loaded->scene, build_tree(*loaded->scene, request.tree, runner));
+  const TreeBudget budget = settled_budget(*loaded->scene, request.tree, WorkerSettings().wide_tree_bytes);
+  const auto scene = render::prepare(loaded->scene, build_tree(*loaded->scene, budget, runner));
   const auto replayed = render::replay_sample(*scene, *settings, at.x, at.y, at.sample);
   ReplayView view{at.x, at.y, at.sample, {replayed.radiance.x, replayed.radiance.y, replayed.radiance.z},
                   replayed.dropped, replayed.truncated, replayed.stats.bounce_rays,

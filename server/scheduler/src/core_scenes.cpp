@@ -8,8 +8,8 @@ namespace raykiln::server {
 SceneView Scheduler::Core::view(SceneRecord record) const {
   SceneView view;
   view.report = decode_report(record.report).value_or(SceneReport{});
-  view.cache = parts_.cache.state(record.id);
-  view.prepare = parts_.cache.progress(record.id);
+  view.cache = parts_.cache.state(record.id, {});
+  view.prepare = parts_.cache.progress(record.id, {});
   view.tree = parts_.cache.tree_report(record.id);
   view.record = std::move(record);
   return view;

@@ -37,6 +37,12 @@ class ByteLru {
     return found->second.value;
   }
 
+  /// The value where there is one, as recently used as before.
+  [[nodiscard]] const Value* find(const std::string& key) const {
+    const auto found = entries_.find(key);
+    return found == entries_.end() ? nullptr : &found->second.value;
+  }
+
   /// Keys of all entries that begin so.
   [[nodiscard]] std::vector<std::string> keys_with(const std::string& prefix) const {
     std::vector<std::string> keys;

@@ -48,12 +48,11 @@ std::uint64_t bytes_of(const render::Scene& scene) {
          texture_bytes(scene);
 }
 
-std::string tree_key(const render::Scene& scene, const TreeBudget& budget) {
-  const render::BuildParams p = build_params(budget);
+std::string tree_key(const render::Scene& scene, const TreeBudget& settled) {
+  const render::BuildParams p = build_params(settled);
   char text[200];
-  std::snprintf(text, sizeof text, "%d %a %a %a %a %d %d %llu", render::kKdTreeVersion, p.k_t, p.k_i,
-                p.empty_factor, p.max_duplication, p.max_depth, p.leaf_width,
-                static_cast<unsigned long long>(budget.max_bytes.value_or(0)));
+  std::snprintf(text, sizeof text, "%d %a %a %a %a %d %d", render::kKdTreeVersion, p.k_t, p.k_i,
+                p.empty_factor, p.max_duplication, p.max_depth, p.leaf_width);
   return "tree " + geometry_digest(scene) + ' ' + text;
 }
 
@@ -76,13 +75,13 @@ class Ticket final : public PrepareTicket {
 
 std::string scene_key(const std::string& scene_id) { return "scene " + scene_id + ' '; }
 
-std::string ready_keys(const std::string& scene_id) { return scene_key(scene_id) + "with "; }
 std::string ready_key(const std::string& scene_id, const TreeBudget& budget) {
-  return ready_keys(scene_id) + tree_budget_text(budget) + ';';
+  return scene_key(scene_id) + "with " + tree_budget_text(budget);
 }
 
 SceneCache::State::State(const WorkerSettings& settings, Parts parts)
     : kept(settings.scene_cache_bytes),
+      wide_tree_bytes_(settings.wide_tree_bytes),
       parts_(std::move(parts)),
       builds_(parts_.metrics.counter("raykiln_tree_builds_total", "kd-trees that were built")),
       imports_(parts_.metrics.counter("raykiln_scene_imports_total", "scenes read for rendering")),
@@ -105,11 +104,20 @@ void SceneCache::State::stop() {
   for (auto& thread : threads_) thread.join();
 }
 
-CacheState SceneCache::State::state(const std::string& begin_of_keys) const {
-  if (!kept.keys_with(begin_of_keys).empty()) return CacheState::kReady;
-  const auto flight = flights.lower_bound(begin_of_keys);
-  const bool under_way = flight != flights.end() && flight->first.starts_with(begin_of_keys);
-  return under_way ? CacheState::kBuilding : CacheState::kAbsent;
+CacheState SceneCache::State::state(const std::string& scene_id, const TreeBudget& budget) const {
+  const auto key = kept_key(scene_id, budget);
+  if (key && kept.contains(*key)) return CacheState::kReady;
+  return flights.contains(ready_key(scene_id, budget)) ? CacheState::kBuilding : CacheState::kAbsent;
+}
+
+/// Under which a scene that is ready is kept: by what its budget comes to. Nothing while the scene is not in memory,
+/// which stays as long as anything that was made of it.
+std::optional<std::string> SceneCache::State::kept_key(const std::string& scene_id, const TreeBudget& budget) const {
+  const Kept* import = kept.find(import_key(scene_id));
+  if (import == nullptr) return std::nullopt;
+  const render::Scene& scene = *std::get<ImportedScene>(*import);
+  if (!check_tree_budget(scene, budget)) return std::nullopt;
+  return ready_key(scene_id, settled_budget(scene, budget, wide_tree_bytes_));
 }
 
 void SceneCache::State::forget(const std::string& scene_id) {
@@ -118,7 +126,8 @@ void SceneCache::State::forget(const std::string& scene_id) {
 }
 
 std::optional<ReadyScene> SceneCache::State::ready(const std::string& scene_id, const TreeBudget& budget) {
-  auto found = kept.use(ready_key(scene_id, budget));
+  const auto key = kept_key(scene_id, budget);
+  auto found = key ? kept.use(*key) : std::nullopt;
   if (!found) return std::nullopt;
   ReadyScene scene = std::get<ReadyScene>(*found);
   // Tree and import after the scene: they are dropped last, so that their bytes stay counted while a
@@ -228,16 +237,21 @@ Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight)
   auto source = imported(*flight);
   if (!source) return source.error();
   if (auto fits = check_tree_budget(**source, flight->budget); !fits) return fits.error();
-  const std::string key = tree_key(**source, flight->budget);
-  auto tree = obtain_tree(flight, **source, key);
+  const TreeBudget settled = settled_budget(**source, flight->budget, wide_tree_bytes_);
+  const std::string key = tree_key(**source, settled);
+  auto tree = obtain_tree(flight, **source, settled, key);
   if (!tree) return tree.error();
   ReadyScene scene{*source, render::prepare(*source, tree->tree.tree), tree->tree.report, tree->built_now, key};
   const std::scoped_lock lock(mutex);
+  if (auto same = ready(id, flight->budget)) {  // by another budget that comes to this one
+    same->built_now = tree->built_now;
+    return std::move(*same);
+  }
   // Another scene may have driven import and tree out meanwhile: what is kept is counted with all it holds.
   if (!kept.contains(key)) keep(key, tree->tree, tree->tree.report.stats.bytes, {import_key(id)});
   std::uint64_t bytes = render::prepared_bytes(*scene.prepared);
   if (keep_imported(id, *source, key) != *source) bytes += bytes_of(**source);
-  keep(ready_key(id, flight->budget), scene, bytes, {key, import_key(id)});
+  keep(ready_key(id, settled), scene, bytes, {key, import_key(id)});
   reports[id] = scene.tree;
   return scene;
 }
@@ -282,7 +296,7 @@ std::optional<BuiltTree> SceneCache::State::build(TreeFlight& tree_flight,
 }
 
 Result<SceneCache::State::NewTree> SceneCache::State::obtain_tree(
-    const std::shared_ptr<Flight>& flight, const render::Scene& scene, const std::string& key) {
+    const std::shared_ptr<Flight>& flight, const render::Scene& scene, const TreeBudget& settled, const std::string& key) {
   std::unique_lock lock(mutex);
   while (flight->wanted()) {
     if (auto found = kept.use(key)) return NewTree{std::get<BuiltTree>(*found), false};
@@ -302,7 +316,7 @@ Result<SceneCache::State::NewTree> SceneCache::State::obtain_tree(
     std::optional<BuiltTree> built;
     std::exception_ptr fault;
     try {
-      built = build(*mine, scene, flight->budget);
+      built = build(*mine, scene, settled);
     } catch (...) {
       fault = std::current_exception();
     }

@@ -28,9 +28,9 @@ struct TreeFlight {
   bool ended = false;
 };
 
-/// How the keys begin of all that is kept of a scene, and of what is ready or under way with some budget.
+/// How the keys begin of all that is kept of a scene.
 [[nodiscard]] std::string scene_key(const std::string& scene_id);
-[[nodiscard]] std::string ready_keys(const std::string& scene_id);
+/// Of what is under way with a budget as it was asked for, and of what is ready with a settled one.
 [[nodiscard]] std::string ready_key(const std::string& scene_id, const TreeBudget& budget);
 
 struct SceneCache::State {
@@ -43,7 +43,7 @@ struct SceneCache::State {
   void drop(const std::shared_ptr<Flight>& flight, std::uint64_t waiter);
   void stop();
   /// Preconditions of these: the mutex is held.
-  [[nodiscard]] CacheState state(const std::string& begin_of_keys) const;
+  [[nodiscard]] CacheState state(const std::string& scene_id, const TreeBudget& budget) const;
   void forget(const std::string& scene_id);
 
   /// Work of one preparing thread.
@@ -64,12 +64,14 @@ struct SceneCache::State {
   [[nodiscard]] Result<ReadyScene> fly(const std::shared_ptr<Flight>& flight);
   [[nodiscard]] Result<ReadyScene> guarded_fly(const std::shared_ptr<Flight>& flight);
   [[nodiscard]] std::optional<ReadyScene> ready(const std::string& scene_id, const TreeBudget& budget);
+  [[nodiscard]] std::optional<std::string> kept_key(const std::string& scene_id, const TreeBudget& budget) const;
   [[nodiscard]] Result<ImportedScene> imported(const Flight& flight);
   [[nodiscard]] ImportedScene keep_imported(const std::string& scene_id, ImportedScene scene,
                                             const std::string& beside);
   void end(const std::shared_ptr<Flight>& flight);
   [[nodiscard]] Result<NewTree> obtain_tree(const std::shared_ptr<Flight>& flight,
-                                            const render::Scene& scene, const std::string& key);
+                                            const render::Scene& scene, const TreeBudget& settled,
+                                            const std::string& key);
   [[nodiscard]] std::optional<BuiltTree> build(TreeFlight& tree_flight, const render::Scene& scene,
                                                const TreeBudget& budget);
   [[nodiscard]] bool is_wanted(const TreeFlight& tree_flight) const;
@@ -77,6 +79,7 @@ struct SceneCache::State {
   void keep(const std::string& key, Kept value, std::uint64_t bytes,
             std::initializer_list<std::string> beside = {});
 
+  const std::uint64_t wide_tree_bytes_;
   Parts parts_;
   Counter& builds_;
   Counter& imports_;

@@ -25,20 +25,13 @@ std::unique_ptr<PrepareTicket> SceneCache::prepare(const std::string& scene_id, 
 
 CacheState SceneCache::state(const std::string& scene_id, const TreeBudget& budget) const {
   const std::scoped_lock lock(state_->mutex);
-  return state_->state(ready_key(scene_id, budget));
+  return state_->state(scene_id, budget);
 }
 
-CacheState SceneCache::state(const std::string& scene_id) const {
+PrepareProgress SceneCache::progress(const std::string& scene_id, const TreeBudget& budget) const {
   const std::scoped_lock lock(state_->mutex);
-  return state_->state(ready_keys(scene_id));
-}
-
-PrepareProgress SceneCache::progress(const std::string& scene_id) const {
-  const std::scoped_lock lock(state_->mutex);
-  const std::string keys = ready_keys(scene_id);
-  const auto found = state_->flights.lower_bound(keys);
-  const bool under_way = found != state_->flights.end() && found->first.starts_with(keys);
-  return under_way ? found->second->progress() : PrepareProgress{};
+  const auto found = state_->flights.find(ready_key(scene_id, budget));
+  return found == state_->flights.end() ? PrepareProgress{} : found->second->progress();
 }
 
 std::optional<TreeReport> SceneCache::tree_report(const std::string& scene_id) const {

@@ -13,13 +13,12 @@ render::BuildParams build_params(const TreeBudget& budget) {
   return params;
 }
 
-std::uint64_t tree_byte_limit(const render::Scene& scene, const TreeBudget& budget) {
-  constexpr std::uint64_t kFree = std::uint64_t{1} << 30U;
+std::uint64_t tree_byte_limit(const render::Scene& scene, const TreeBudget& budget, std::uint64_t wide_bytes) {
   const std::uint64_t asked = budget.max_bytes.value_or(0);
   const double usual = TreeBudget{}.references_per_triangle;
   if (budget.references_per_triangle <= usual) return asked;
   const auto least = static_cast<double>(render::least_tree_bytes(scene, build_params(budget)));
-  const std::uint64_t most = std::max(kFree, static_cast<std::uint64_t>(std::ceil(usual * least)));
+  const std::uint64_t most = std::max(wide_bytes, static_cast<std::uint64_t>(std::ceil(usual * least)));
   return asked == 0 ? most : std::min(asked, most);
 }
 
@@ -34,11 +33,17 @@ Status check_tree_budget(const render::Scene& scene, const TreeBudget& budget) {
                "/tree/max_bytes"};
 }
 
-std::shared_ptr<const render::KdTree> build_tree(const render::Scene& scene, const TreeBudget& budget,
-                                                 render::TaskRunner& runner) {
+TreeBudget settled_budget(const render::Scene& scene, const TreeBudget& budget, std::uint64_t wide_bytes) {
+  constexpr double kSteps = 64.0;
   render::BuildLimits limits;
-  limits.max_bytes = tree_byte_limit(scene, budget);
-  return render::build_scene_tree(scene, build_params(budget), runner, limits);
+  limits.max_bytes = tree_byte_limit(scene, budget, wide_bytes);
+  const double references = render::affordable_references(scene, build_params(budget), limits);
+  return {.references_per_triangle = std::max(1.0, std::floor(kSteps * references) / kSteps)};
+}
+
+std::shared_ptr<const render::KdTree> build_tree(const render::Scene& scene, const TreeBudget& settled,
+                                                 render::TaskRunner& runner) {
+  return render::build_scene_tree(scene, build_params(settled), runner);
 }
 
 TreeFigures tree_figures(const render::BuildStats& stats) {

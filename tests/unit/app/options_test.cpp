@@ -37,6 +37,9 @@ TEST(DaemonOptions, RefusesNonsense) {
   EXPECT_EQ(daemon({"--look-share", "1.5"}).exit_code, 2);
   EXPECT_EQ(daemon({"--look-share", "0"}).options.config.scheduler.look_share, 0.0);
   EXPECT_EQ(daemon({"--cache-bytes", "512MB"}).options.config.workers.scene_cache_bytes, 512U << 20U);
+  EXPECT_EQ(daemon({}).options.config.workers.wide_tree_bytes, kGiB);
+  EXPECT_EQ(daemon({"--wide-tree-bytes", "300MB"}).options.config.workers.wide_tree_bytes, 300U << 20U);
+  for (const char* wrong : {"0", "-1", "9007199254740992", "much"}) EXPECT_EQ(daemon({"--wide-tree-bytes", wrong}).exit_code, 2) << wrong;
 }
 
 TEST(CliOptions, ABatchIsLocalOrWaitedForAgain) {

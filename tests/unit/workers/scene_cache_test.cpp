@@ -54,7 +54,11 @@ class SceneCacheTest : public testing::Test {
     EXPECT_TRUE(ready);
     return std::move(*ready);
   }
-  [[nodiscard]] bool ready(std::size_t scene) const { return cache->state(ids[scene]) == CacheState::kReady; }
+  /// Bytes that the tree of a scene may need at least.
+  [[nodiscard]] std::uint64_t least_of(std::size_t scene) const {
+    return render::least_tree_bytes(tiny_scene(0.5F, 2.0F + static_cast<float>(scene)), {});
+  }
+  [[nodiscard]] bool ready(std::size_t scene) const { return cache->state(ids[scene], {}) == CacheState::kReady; }
   double builds() { return metrics.counter("raykiln_tree_builds_total", "").value(); }
   double imports() { return metrics.counter("raykiln_scene_imports_total", "").value(); }
 
@@ -139,13 +143,13 @@ TreeBudget budget_of(double references, std::optional<std::uint64_t> bytes = std
 TEST_F(SceneCacheTest, BudgetsHaveTreesOfTheirOwnOfOneImport) {
   open(kGiB);
   const double built = builds(), read = imports();
-  const TreeBudget wide = budget_of(4.0), narrow = budget_of(1.0), bounded = budget_of(4.0, 1 << 20);
+  const TreeBudget wide = budget_of(4.0), narrow = budget_of(1.0), bounded = budget_of(4.0, 2 * least_of(0));
   const ReadyScene a = hold(0, wide), b = hold(0, narrow), c = hold(0, bounded);
   EXPECT_EQ(builds(), built + 3.0);
   EXPECT_EQ(imports(), read + 1.0);
   EXPECT_TRUE(a.scene == b.scene && a.scene == c.scene);
   EXPECT_NE(a.prepared, b.prepared);
-  EXPECT_TRUE(a.tree_key != b.tree_key && a.tree_key != c.tree_key);
+  EXPECT_TRUE(a.tree_key != b.tree_key && a.tree_key != c.tree_key && b.tree_key != c.tree_key);
   EXPECT_EQ(hold(0, narrow).prepared, b.prepared);
   EXPECT_EQ(builds(), built + 3.0);
   EXPECT_LT(cache->bytes(), 3 * one) << "the import counts once";
@@ -160,6 +164,34 @@ TEST_F(SceneCacheTest, BudgetsHaveTreesOfTheirOwnOfOneImport) {
   hold(0, narrow);
   EXPECT_EQ(imports(), read + 2.0) << "what was deleted is read again";
   EXPECT_EQ(builds(), built + 3.0) << "its tree is that of any such geometry";
+}
+
+/// Who counts bytes up drives nobody out: what the bytes come to is one tree, and one scene with it.
+TEST_F(SceneCacheTest, BudgetsThatComeToTheSameShareTreeAndScene) {
+  open(kGiB);
+  const double built = builds();
+  const ReadyScene usual = hold(0), one_each = hold(0, budget_of(1.0));
+  const std::uint64_t held = cache->bytes(), least = least_of(0);
+  for (std::uint64_t more = 0; more < 200; ++more) {
+    const TreeBudget plenty = budget_of(4.0, 100 * least + more);
+    EXPECT_EQ(cache->state(ids[0], plenty), CacheState::kReady) << "without having been asked for";
+    EXPECT_EQ(hold(0, plenty).prepared, usual.prepared);
+  }
+  EXPECT_EQ(hold(0, budget_of(4.0, least)).prepared, one_each.prepared);
+  EXPECT_EQ(hold(0, budget_of(1.0 + 1e-9)).prepared, one_each.prepared);
+  EXPECT_EQ(builds(), built + 2.0);
+  EXPECT_EQ(cache->bytes(), held);
+  EXPECT_EQ(cache->state(ids[0], budget_of(4.0, least - 1)), CacheState::kAbsent);
+}
+
+TEST_F(SceneCacheTest, AStateIsThatOfTheBudgetAskedFor) {
+  open(kGiB);
+  hold(0, budget_of(1.0));
+  EXPECT_EQ(cache->state(ids[0], budget_of(1.0)), CacheState::kReady);
+  EXPECT_EQ(cache->state(ids[0], {}), CacheState::kAbsent);
+  EXPECT_EQ(cache->progress(ids[0], {}).stage, PrepareStage::kNone);
+  hold(0);
+  EXPECT_EQ(cache->state(ids[0], {}), CacheState::kReady);
 }
 
 TEST_F(SceneCacheTest, BudgetsAreBoundedLikeScenes) {
@@ -191,16 +223,41 @@ TEST_F(SceneCacheTest, TooFewBytesAreRefusedWithWhatIsNeeded) {
 
 TEST(TreeByteLimit, BoundsWhatManyReferencesMayTake) {
   const render::Scene tiny = tiny_scene(0.5F, 1.0F);
-  EXPECT_EQ(tree_byte_limit(tiny, budget_of(4.0)), 0U);
-  EXPECT_EQ(tree_byte_limit(tiny, budget_of(4.0, 5000)), 5000U);
-  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0)), kGiB);
-  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0, 5000)), 5000U);
-  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0, 5 * kGiB)), kGiB);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(4.0), kGiB), 0U);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(4.0, 5000), kGiB), 5000U);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0), kGiB), kGiB);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0), 3 * kGiB), 3 * kGiB);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0, 5000), kGiB), 5000U);
+  EXPECT_EQ(tree_byte_limit(tiny, budget_of(64.0, 5 * kGiB), kGiB), kGiB);
   render::Scene large = tiny;
   large.mesh.triangles.resize(2'000'000, large.mesh.triangles.at(0));
   const std::uint64_t least = render::least_tree_bytes(large, build_params({}));
   ASSERT_GT(4 * least, kGiB);
-  EXPECT_EQ(tree_byte_limit(large, budget_of(64.0)), 4 * least);
+  EXPECT_EQ(tree_byte_limit(large, budget_of(64.0), kGiB), 4 * least);
+  EXPECT_EQ(tree_byte_limit(large, budget_of(64.0), 5 * least), 5 * least);
+  const double one = settled_budget(large, budget_of(64.0), kGiB).references_per_triangle;
+  const double two = settled_budget(large, budget_of(64.0), 8 * least).references_per_triangle;
+  EXPECT_TRUE(4.0 <= one && one + 3.9 < two && two < 64.0) << one << ' ' << two;
+}
+
+TEST(SettledBudget, IsWhatDecidesTheTree) {
+  const render::Scene scene = tiny_scene(0.5F, 1.0F);
+  const std::uint64_t least = render::least_tree_bytes(scene, {});
+  const auto settled = [&](double references, std::optional<std::uint64_t> bytes = std::nullopt) {
+    const TreeBudget found = settled_budget(scene, budget_of(references, bytes), kGiB);
+    EXPECT_FALSE(found.max_bytes);
+    return found.references_per_triangle;
+  };
+  EXPECT_EQ(settled(4.0), 4.0);
+  EXPECT_EQ(settled(1.5), 1.5);
+  EXPECT_EQ(settled(1.1), 70.0 / 64.0);
+  EXPECT_EQ(settled(64.0), 64.0);
+  EXPECT_EQ(settled(4.0, least), 1.0);
+  EXPECT_EQ(settled(4.0, 100 * least), 4.0);
+  const double between = settled(4.0, 2 * least);
+  EXPECT_TRUE(1.0 < between && between < 4.0) << between;
+  EXPECT_EQ(settled(4.0, 2 * least + 1), between);
+  EXPECT_EQ(settled(between, 2 * least), between) << "settled again";
 }
 
 TEST_F(SceneCacheTest, ForgetGivesBytesBack) {

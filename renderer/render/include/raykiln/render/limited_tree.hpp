@@ -18,4 +18,7 @@ namespace raykiln::render {
 /// Bytes that the build of the scene's tree may need with one reference a triangle.
 [[nodiscard]] std::uint64_t least_tree_bytes(const Scene& scene, const BuildParams& params);
 
+/// References a triangle that the limits leave of params.max_duplication: all that they decide of the tree.
+[[nodiscard]] double affordable_references(const Scene& scene, const BuildParams& params, const BuildLimits& limits);
+
 }  // namespace raykiln::render

@@ -59,6 +59,7 @@ struct WorkerSettings {
   int niceness = 5;                              ///< of the worker threads, 0 .. 19
   int preparing_threads = 2;                     ///< imports and builds at once
   std::uint64_t scene_cache_bytes = 4 * kGiB;    ///< scenes and trees kept in memory
+  std::uint64_t wide_tree_bytes = kGiB;          ///< of building a tree of more references than by default
   std::size_t max_pending_imports = 16;          ///< uploads waiting for validation
 };
 

@@ -77,7 +77,7 @@ class Scheduler {
   void scene(std::string id, Reply<SceneView> reply);
   void scenes(std::size_t offset, std::size_t limit, Reply<std::vector<SceneView>> reply);
   void delete_scene(std::string id, Reply<std::monostate> reply);
-  /// Starts to make scene and tree ready, if they are not; answers at once with the state.
+  /// Starts to make scene and tree of the default budget ready, if they are not; answers at once with the state.
   void prepare_scene(std::string id, Reply<SceneView> reply);
 
   void status(Reply<SchedulerStatus> reply);

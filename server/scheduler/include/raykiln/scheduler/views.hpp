@@ -19,7 +19,7 @@ namespace raykiln::server {
 struct SceneView {
   SceneRecord record;
   SceneReport report;  ///< decoded from the record
-  CacheState cache = CacheState::kAbsent;
+  CacheState cache = CacheState::kAbsent;  ///< with the tree of the default budget, as prepare_scene() makes it
   PrepareProgress prepare;             ///< while kBuilding
   std::optional<TreeReport> tree{};    ///< nothing before the build
 };

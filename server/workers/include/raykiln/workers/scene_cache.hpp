@@ -51,8 +51,8 @@ class PrepareTicket {
 using TreeBuilder = std::function<std::shared_ptr<const render::KdTree>(
     const render::Scene&, const TreeBudget&, render::TaskRunner&)>;
 
-/// Single flight for scenes and for trees; a scene is made ready for a budget of its tree, whose key is (geometry
-/// digest, build parameters, bytes, kKdTreeVersion). What was imported serves all budgets. Least recently used
+/// Single flight for scenes and for trees; a scene is made ready for a budget of its tree, whose key is (geometry digest, build
+/// parameters by settled_budget(), kKdTreeVersion): budgets that come to the same share tree and scene. What was imported serves all budgets. Least recently used
 /// scenes and trees are dropped beyond the bound; who holds one keeps it. Safe to use from any thread.
 class SceneCache {
  public:
@@ -63,7 +63,7 @@ class SceneCache {
     const Clock& clock;
     MetricsRegistry& metrics;
     Log log;
-    TreeBuilder build{};  ///< empty: build_tree()
+    TreeBuilder build{};  ///< empty: build_tree(); is given settled budgets
   };
   SceneCache(const WorkerSettings& settings, Parts parts);
   ~SceneCache();  ///< stops all flights, joins
@@ -76,11 +76,9 @@ class SceneCache {
       const std::string& scene_id, const TreeBudget& budget,
       std::function<void(PrepareProgress)> progress, std::function<void(Result<ReadyScene>)> done);
 
-  /// With a tree of this budget, or of any.
+  /// Of the scene with the tree of this budget, not of another's; and how far its preparation is, kNone when there is none.
   [[nodiscard]] CacheState state(const std::string& scene_id, const TreeBudget& budget) const;
-  [[nodiscard]] CacheState state(const std::string& scene_id) const;
-  /// How far a preparation is, whatever its budget; kNone when there is none.
-  [[nodiscard]] PrepareProgress progress(const std::string& scene_id) const;
+  [[nodiscard]] PrepareProgress progress(const std::string& scene_id, const TreeBudget& budget) const;
   /// Statistics of the tree that was last made ready for the scene by this process.
   [[nodiscard]] std::optional<TreeReport> tree_report(const std::string& scene_id) const;
   /// Drops what is kept of a deleted scene.

@@ -14,15 +14,20 @@ namespace raykiln::server {
 [[nodiscard]] render::BuildParams build_params(const TreeBudget& budget);
 
 /// Most bytes that building the tree may take; 0: no limit. Asking for more references than by default
-/// gives as many as 1 GiB or what the default may need at worst, whichever is more, holds for certain:
-/// no request takes the server's memory.
-[[nodiscard]] std::uint64_t tree_byte_limit(const render::Scene& scene, const TreeBudget& budget);
+/// gives as many as `wide_bytes` (WorkerSettings::wide_tree_bytes) or what the default may need at worst,
+/// whichever is more, hold for certain: no request takes the server's memory.
+[[nodiscard]] std::uint64_t tree_byte_limit(const render::Scene& scene, const TreeBudget& budget, std::uint64_t wide_bytes);
+
+/// What the budget comes to for this scene, without bytes: budgets that come to the same have the same tree. In steps of
+/// 1/64 of a reference a triangle, downwards, so that who counts bytes up does not get a tree for each.
+/// Precondition: check_tree_budget() is success.
+[[nodiscard]] TreeBudget settled_budget(const render::Scene& scene, const TreeBudget& budget, std::uint64_t wide_bytes);
 
 /// "tree_too_large" at "/tree/max_bytes" where the builder could not keep to the bytes for certain.
 [[nodiscard]] Status check_tree_budget(const render::Scene& scene, const TreeBudget& budget);
 
-/// Null exactly when the runner was asked to stop. Precondition: check_tree_budget() is success.
-[[nodiscard]] std::shared_ptr<const render::KdTree> build_tree(const render::Scene& scene, const TreeBudget& budget,
+/// Null exactly when the runner was asked to stop. `settled`: by settled_budget().
+[[nodiscard]] std::shared_ptr<const render::KdTree> build_tree(const render::Scene& scene, const TreeBudget& settled,
                                                                render::TaskRunner& runner);
 
 [[nodiscard]] TreeFigures tree_figures(const render::BuildStats& stats);
