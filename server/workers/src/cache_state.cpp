@@ -213,6 +213,7 @@ Result<SceneCache::State::ImportedScene> SceneCache::State::imported(const Fligh
   auto loaded = parts_.intake.load(record->kind, *files, MissingTextures::kLeaveOut, flight.token());
   if (!loaded) return loaded.error();
   const std::scoped_lock lock(mutex);
+  if (!flight.wanted()) return stopped();  // the scene may have been deleted meanwhile
   return keep_imported(id, loaded->scene, "");
 }
 
@@ -243,6 +244,7 @@ Result<ReadyScene> SceneCache::State::fly(const std::shared_ptr<Flight>& flight)
   if (!tree) return tree.error();
   ReadyScene scene{*source, render::prepare(*source, tree->tree.tree), tree->tree.report, tree->built_now, key};
   const std::scoped_lock lock(mutex);
+  if (!flight->wanted()) return stopped();  // nothing of a deleted scene is put back
   if (auto same = ready(id, flight->budget)) {  // by another budget that comes to this one
     same->built_now = tree->built_now;
     return std::move(*same);

@@ -194,6 +194,41 @@ TEST_F(SceneCacheTest, AStateIsThatOfTheBudgetAskedFor) {
   EXPECT_EQ(cache->state(ids[0], {}), CacheState::kReady);
 }
 
+/// Whoever deletes a scene has no ticket of it any more, but its import or build may be under way.
+TEST_F(SceneCacheTest, NothingOfADeletedSceneIsPutBack) {
+  for (const bool while_building : {false, true}) {
+    std::promise<void> begun, go_on;
+    const auto pause = [&begun, &go_on, paused = std::make_shared<std::atomic<bool>>(false)] {
+      if (paused->exchange(true)) return;
+      begun.set_value();
+      go_on.get_future().wait();
+    };
+    intake.make = [&](const BlobFile& file) {
+      if (!while_building) pause();
+      return tiny_scene(0.5F, 1.0F + static_cast<float>(file.bytes));
+    };
+    const TreeBuilder build = [&](const render::Scene& scene, const TreeBudget& budget, render::TaskRunner& runner) {
+      if (while_building) pause();
+      return build_tree(scene, budget, runner);
+    };
+    WorkerSettings settings;
+    settings.preparing_threads = 1;  // what is asked for next begins when this has ended
+    cache = std::make_unique<SceneCache>(settings, SceneCache::Parts{store, intake, pool, clock, metrics, Log(), build});
+    auto ticket = cache->prepare(ids[0], {}, {}, [](const Result<ReadyScene>&) {});
+    begun.get_future().wait();
+    ticket.reset();
+    cache->forget(ids[0]);
+    go_on.set_value();
+    hold(1);
+    EXPECT_EQ(cache->state(ids[0], {}), CacheState::kAbsent) << while_building;
+    EXPECT_FALSE(cache->tree_report(ids[0])) << while_building;
+    const double read = imports();
+    hold(0);
+    EXPECT_EQ(imports(), read + 1.0) << "its import was kept, while building: " << while_building;
+    cache.reset();
+  }
+}
+
 TEST_F(SceneCacheTest, BudgetsAreBoundedLikeScenes) {
   open(2 * one);
   for (int i = 0; i < 40; ++i) {
