@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "accuracy_line.hpp"
 #include "output_file.hpp"
 #include "raykiln/api/job_json.hpp"
 #include "raykiln/app/cli.hpp"
@@ -104,29 +105,6 @@ ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
     return ExitCode::kFailure;
   }
   return ExitCode::kOk;
-}
-
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * fraction);
-  return text;
-}
-
-/// "error 1.9 % (95 %: 1.8 % to 2.0 %) after 121 samples, stopped by error; heavy_tailed".
-std::string accuracy_line(const JobSnapshot& job) {
-  if (!job.accuracy) return {};
-  const PictureError& a = *job.accuracy;
-  std::string line = "error " + (a.known() ? percent(a.error.value) + " (95 %: " + percent(a.error.low) + " to " +
-                                                 percent(a.error.high) + ')'
-                                           : std::string("unknown"));
-  char samples[32];
-  std::snprintf(samples, sizeof samples, "%.4g", a.mean_samples);
-  line += std::string(" after ") + samples + " samples, stopped by " + std::string(name(job.done_by));
-  if (job.request.stop.error && !target_met(job.request.stop, a)) {
-    line += "; target of " + percent(*job.request.stop.error) + " not reached";
-  }
-  for (const std::string& notice : a.notices) line += "; " + notice;
-  return line;
 }
 
 }  // namespace
