@@ -140,8 +140,8 @@ SplitPlane choose_plane(const BuildContext& context, PlaneSearch& search, Runs r
   if (input.n == 0 || leaf_cost <= params.k_t * params.empty_factor) return {};
   const SweepResult found = search.find(runs, input, leaf_cost, parallel, counts);
   const bool useful = found.best.cost < leaf_cost;
-  if (found.unaffordable < std::min(found.best.cost, leaf_cost)) counts.budget_reached = true;
-  if (useful && depth >= max_depth) counts.budget_reached = true;
+  if (found.unaffordable < std::min(found.best.cost, leaf_cost)) ++counts.splits_over_budget;
+  if (useful && depth >= max_depth) ++counts.splits_over_depth;
   return useful && depth < max_depth ? found.best : SplitPlane{};
 }
 

@@ -137,7 +137,8 @@ void add_counts(const BuildStats& counts, BuildStats& stats) {
   stats.events_moved += counts.events_moved;
   stats.keys_sorted_passes += counts.keys_sorted_passes;
   stats.clips += counts.clips;
-  stats.budget_reached = stats.budget_reached || counts.budget_reached;
+  stats.splits_over_budget += counts.splits_over_budget;
+  stats.splits_over_depth += counts.splits_over_depth;
 }
 
 constexpr std::size_t kMaxIndices = std::size_t{1} << 30;  // nodes keep 30 bits of an index

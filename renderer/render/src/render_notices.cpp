@@ -25,6 +25,11 @@ bool gives_no_benefit(const BuildStats& tree) {
   return (n >= kFewTriangles && ratio >= 0.9) || (n >= kManyTriangles && ratio >= 0.5);
 }
 
+// A few crowded cells of a large tree cost nothing that could be seen.
+bool budget_matters(const BuildStats& tree) {
+  return tree.splits_over_budget > 0 && tree.splits_over_budget >= tree.leaves / 1000;
+}
+
 /// 0 where all rays are parallel.
 double pixel_solid_angle(const Camera& camera, int height_px) {
   if (camera.projection == Projection::kOrthographic) return 0.0;
@@ -66,6 +71,13 @@ std::vector<RenderNotice> render_notices(const RenderSettings& settings, const S
                        "the tree gives no benefit here: its expected cost is " + number(tree.sah_cost) +
                            ", that of testing all " + std::to_string(tree.triangles) +
                            " triangles for every ray " + number(tree.leaf_cost)});
+  }
+  if (budget_matters(tree)) {
+    notices.push_back({"tree_budget_reached",
+                       "the tree's bound on references or bytes stopped " + std::to_string(tree.splits_over_budget) +
+                           " useful splits, at " + std::to_string(tree.references) + " references of " +
+                           std::to_string(tree.triangles) +
+                           " triangles: the picture is the same, rays may take longer"});
   }
   if (settings.texture_reading == TextureReading::kFootprint && scene.textures != nullptr) {
     notices.push_back({"textures_by_footprint",

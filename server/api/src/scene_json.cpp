@@ -33,7 +33,7 @@ Json tree_value(const std::optional<TreeReport>& tree) {
           {"leaves", stats.leaves},               {"references", stats.references},
           {"sah_cost", stats.sah_cost},           {"bytes", stats.bytes},
           {"peak_bytes", stats.live_bytes_peak},  {"depth", stats.depth},
-          {"budget_reached", stats.budget_reached}};
+          {"budget_reached", stats.splits_over_budget > 0}};
 }
 
 Json prepare_value(const SceneView& scene) {

@@ -47,7 +47,7 @@ std::shared_ptr<const render::KdTree> build_tree(const render::Scene& scene, con
 }
 
 TreeFigures tree_figures(const render::BuildStats& stats) {
-  return {stats.references, stats.bytes, stats.live_bytes_peak, stats.budget_reached};
+  return {stats.references, stats.bytes, stats.live_bytes_peak, stats.splits_over_budget > 0};
 }
 
 }  // namespace raykiln::server

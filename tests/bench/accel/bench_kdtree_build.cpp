@@ -116,7 +116,8 @@ JsonObject describe(const std::string& name, const Measured& m) {
       .add("live_bytes_peak", s.live_bytes_peak)
       .add("depth", static_cast<std::uint64_t>(s.depth))
       .add("sah_cost", s.sah_cost)
-      .add("limited", static_cast<std::uint64_t>(s.budget_reached ? 1 : 0));
+      .add("splits_over_budget", s.splits_over_budget)
+      .add("splits_over_depth", s.splits_over_depth);
   return object;
 }
 

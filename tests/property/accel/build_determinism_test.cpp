@@ -27,7 +27,8 @@ void expect_same(const KdTree& a, const KdTree& b) {
   EXPECT_EQ(s.events_moved, t.events_moved);
   EXPECT_EQ(s.keys_sorted_passes, t.keys_sorted_passes);
   EXPECT_EQ(s.clips, t.clips);
-  EXPECT_EQ(s.budget_reached, t.budget_reached);
+  EXPECT_EQ(s.splits_over_budget, t.splits_over_budget);
+  EXPECT_EQ(s.splits_over_depth, t.splits_over_depth);
   EXPECT_EQ(s.live_bytes_peak, t.live_bytes_peak);
 }
 

@@ -83,6 +83,25 @@ TEST(BuildEdgeCases, ObliqueSheetsStayALeaf) {
                               closest(*tree, rays, render::Traversal::kBruteForce)), 0U);
 }
 
+TEST(BuildEdgeCases, EachLimitThatStopsSplitsIsToldApart) {
+  const TestMesh mesh = soup(3000, 7);
+  const auto with = [&](int depth, double duplication) {
+    BuildParams params;
+    params.max_depth = depth;
+    params.max_duplication = duplication;
+    return build_stats(*build(mesh, params));
+  };
+  const auto free = with(48, 1024.0);
+  EXPECT_EQ(free.splits_over_budget, 0U);
+  EXPECT_EQ(free.splits_over_depth, 0U);
+  const auto flat = with(5, 1024.0);
+  EXPECT_EQ(flat.splits_over_budget, 0U);
+  EXPECT_GT(flat.splits_over_depth, 0U);
+  const auto poor = with(48, 1.0);
+  EXPECT_GT(poor.splits_over_budget, 0U);
+  EXPECT_EQ(poor.splits_over_depth, 0U);
+}
+
 TEST(BuildEdgeCases, NeedlesStayWithinTheBudget) {
   BuildParams params;
   params.k_i = 1.5;
@@ -91,7 +110,7 @@ TEST(BuildEdgeCases, NeedlesStayWithinTheBudget) {
     const TestMesh mesh = slivers(5000);
     const auto tree = build(mesh, params);
     EXPECT_LE(static_cast<double>(build_stats(*tree).references), budget * 5000.0);
-    EXPECT_TRUE(build_stats(*tree).budget_reached);
+    EXPECT_GT(build_stats(*tree).splits_over_budget, 0U);
     const auto rays = hard_rays(*tree, mesh, 600, 5);
     EXPECT_EQ(count_differences(rays, closest(*tree, rays),
                                 closest(*tree, rays, render::Traversal::kBruteForce)), 0U);
@@ -213,7 +232,7 @@ TEST(BuildMemory, ByteLimitHoldsAndIsReported) {
     EXPECT_LE(stats.live_bytes_peak, limit);
     EXPECT_GE(stats.live_bytes_peak, stats.bytes);
     EXPECT_LT(stats.references, free.references);
-    EXPECT_TRUE(stats.budget_reached);
+    EXPECT_GT(stats.splits_over_budget, 0U);
   }
   // Never more than the limit: what may not hold every triangle once is refused.
   const std::uint64_t least = render::least_bytes(mesh.view(), {});

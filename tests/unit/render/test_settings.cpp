@@ -97,6 +97,19 @@ TEST(Notices, NameATreeWithoutBenefit) {
       EXPECT_EQ(notices[0].code, "tree_no_benefit");
     }
   }
+  // A bound on references is worth a word where it stops many splits, the depth cap never.
+  BuildStats bounded;
+  bounded.leaves = 100'000;
+  bounded.splits_over_depth = 50'000;
+  bounded.splits_over_budget = 99;
+  support::SceneBuilder nothing;
+  nothing.camera({2, 2, 2}, {0, 0, 0}, {0, 1, 0}, 0.7);
+  const Scene empty = nothing.scene();
+  EXPECT_TRUE(render_notices({}, empty, bounded).empty());
+  bounded.splits_over_budget = 100;
+  const auto told = render_notices({}, empty, bounded);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].code, "tree_budget_reached");
   // A room with a sharp mirror and a point light has the other notice; without the light it has none.
   Scene room = support::mixed_room().scene();
   SerialTaskRunner runner;

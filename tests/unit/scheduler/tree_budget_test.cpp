@@ -1,6 +1,8 @@
 // Jobs that bound the tree of their scene: what they cost, never what they show.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "raykiln/render/limited_tree.hpp"
 #include "support/mesh_generators.hpp"
 #include "support/server_rig.hpp"
@@ -46,6 +48,10 @@ class TreeBudgets : public ::testing::Test {
   }
   JobSnapshot ended(const JobRequest& request) { return rig_->wait_final(rig_->submit(request)->job.id); }
   std::vector<float> picture(const JobId& id) { return (*rig_->image(id))->image.rgb; }
+  static bool warned(const JobSnapshot& job) {
+    return std::any_of(job.warnings.begin(), job.warnings.end(),
+                       [](const JobWarning& w) { return w.code == "tree_budget_reached"; });
+  }
   double counted(const char* metric) { return rig_->metrics.counter(metric, "").value(); }
 
   TempDirectory directory_;
@@ -75,6 +81,7 @@ TEST_F(TreeBudgets, ChangeTheTreeAndNoPixel) {
       EXPECT_LE(tree.peak_bytes, *bytes);
     }
     EXPECT_TRUE(tree.budget_reached || most > 4.0);
+    EXPECT_EQ(warned(done), tree.budget_reached);
     references.push_back(tree.references);
   }
   EXPECT_EQ(references[0], triangles_);

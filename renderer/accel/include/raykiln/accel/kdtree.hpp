@@ -44,7 +44,8 @@ struct BuildStats {
   /// thread may add a cell of 2 MiB. Not in it: the mesh that was given and the tree's copy of it.
   std::uint64_t live_bytes_peak = 0;
   int depth = 0;
-  bool budget_reached = false;  ///< the reference budget or the depth cap stopped a useful split
+  std::uint64_t splits_over_budget = 0;  ///< useful ones for which references or bytes did not suffice
+  std::uint64_t splits_over_depth = 0;   ///< useful ones below the depth cap
   double sah_cost = 0.0;        ///< expected cost of a random ray that meets the box
   double leaf_cost = 0.0;       ///< the same if the whole tree were one leaf: testing everything
 };

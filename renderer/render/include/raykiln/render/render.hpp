@@ -93,6 +93,7 @@ struct LightModelWarning {
 [[nodiscard]] EffectPlan effect_plan(const RenderSettings& settings, const Scene& scene);
 
 /// What is worth knowing beside a picture: "tree_no_benefit" where no split of the tree pays,
+/// "tree_budget_reached" where its bound on references or bytes stopped one in a thousand splits and more,
 /// "textures_by_footprint" where their values are means, and
 /// "unresolved_sharp_highlight" where mirrors show point lights, spots or suns smaller than samples can find.
 /// Precondition: settings_error() is nothing.

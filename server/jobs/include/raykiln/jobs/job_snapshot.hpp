@@ -62,7 +62,7 @@ struct TreeFigures {
   std::uint64_t references = 0;     ///< triangles of leaves; one may stand in several
   std::uint64_t bytes = 0;
   std::uint64_t peak_bytes = 0;     ///< most that the build held at once, beside the mesh
-  bool budget_reached = false;      ///< a bound on references, bytes or depth stopped a useful split
+  bool budget_reached = false;      ///< a bound on references or bytes stopped a useful split
 };
 
 struct JobStatistics {

@@ -30,7 +30,7 @@ void warn_of_light_model(const render::RenderSettings& settings, const render::S
 /// Adds "deliberate_approximation" at "/effects" where something that the scene calls for is left out.
 void warn_of_approximation(const EffectReport& report, std::vector<JobWarning>& warnings);
 
-/// Adds what the tree and the sampling cannot help ("tree_no_benefit", "unresolved_sharp_highlight");
+/// Adds what the tree and the sampling cannot help ("tree_no_benefit", "tree_budget_reached", "unresolved_sharp_highlight");
 /// nothing that is there already.
 void warn_of_picture(const render::RenderSettings& settings, const render::Scene& scene,
                      const render::BuildStats& tree, std::vector<JobWarning>& warnings);
