@@ -37,6 +37,7 @@ class PlaneSearch {
     std::size_t begin = 0, end = 0;  ///< in keys_
   };
   using Cursors = std::vector<std::size_t>;
+  using Segments = std::vector<Segment>;
   /// Of each bin: extents that begin and that end before it, and no plane in it costs less than
   /// `least` before the empty factor.
   struct BinBounds {
@@ -49,21 +50,29 @@ class PlaneSearch {
   void count_bins(Runs runs, const BinGrid& grid, bool parallel);
   void choose_segments(const BinGrid& grid, const SweepInput& input, double leaf_cost,
                        const Choosers& choosers);
+  void look_into_segments(Runs runs, const BinGrid& grid, const SweepInput& input, double leaf_cost,
+                          bool parallel, Choosers& choosers, BuildStats& counts);
+  // Gathers, sorts and sweeps `chosen`; gives the least cost known.
+  double look_into(Segments& chosen, Runs runs, const BinGrid& grid, const SweepInput& input,
+                   double least, bool parallel, Choosers& choosers, BuildStats& counts);
   // Fills bounds_[axis]; gives a cost that the axis' cheapest plane does not exceed.
   double bound_axis(std::size_t axis, const BinGrid& grid, const SweepInput& input,
                     const CellCost& cost);
-  void gather(Runs runs, const BinGrid& grid, bool parallel);
-  void gather_run(std::span<const Reference> run, const BinGrid& grid, std::size_t* cursors);
-  void sweep_segments(const SweepInput& input, double leaf_cost, Choosers& choosers,
-                      BuildStats& counts);
+  void place(Segments& chosen, std::size_t bins, std::size_t runs);
+  void gather(Segments& chosen, Runs runs, const BinGrid& grid, bool parallel);
+  void gather_run(std::span<const Reference> run, const BinCode* codes, const BinGrid& grid,
+                  Cursors& cursors);
 
   BuildContext& context_;
   BinCounts bins_;
   std::array<BinBounds, 3> bounds_;
   std::vector<BinCounts> run_bins_;  ///< of each run, when they are counted as tasks
-  std::vector<Segment> segments_;
+  std::vector<BinCode> codes_;       ///< of the references of a small cell
+  Segments segments_;                ///< that may hold the cheapest plane
+  Segments first_;                   ///< the most promising of them
   std::array<std::array<std::uint32_t, kMaxBins + 2>, 3> segment_of_;
-  std::array<bool, 3> gathered_{};  ///< axes with segments
+  WantedBins wanted_;
+  std::size_t waste_ = 0;            ///< where keys that nobody asked for go, one place a run
   std::vector<EventKey> keys_;
   std::vector<std::uint64_t> sort_scratch_;
 };
