@@ -95,18 +95,21 @@ struct Lanes16 {
     return blend(eq(axis, set1(1U)), xz, y);
   }
 
-  /// The two words of nodes[index[lane]].
+  /// The two words of nodes[index[lane]]. Plain loads: gathers are slow on many processors.
   static void load_nodes(const void* nodes, const std::uint32_t* index, I& first, I& second) {
-    const auto eight = [&](const std::uint32_t* at) {
-      const __m256i i = _mm256_load_si256(reinterpret_cast<const __m256i*>(at));
-      return _mm512_i32gather_epi64(i, nodes, 8);
+    const auto* base = static_cast<const double*>(nodes);
+    const auto pair = [&](int a) {
+      return _mm_loadh_pd(_mm_load_sd(base + index[a]), base + index[a + 1]);
     };
-    const __m512i lo = eight(index);
-    const __m512i hi = eight(index + 8);
-    const __m512i even =
-        _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-    first = _mm512_permutex2var_epi32(lo, even, hi);
-    second = _mm512_permutex2var_epi32(lo, add(even, set1(1U)), hi);
+    const auto eight = [&](int a, int b) {
+      const __m256d lo = _mm256_set_m128d(pair(a + 4), pair(a));
+      const __m256d hi = _mm256_set_m128d(pair(b + 4), pair(b));
+      return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castpd256_pd512(lo), hi, 1));
+    };
+    const F even = eight(0, 8);
+    const F odd = eight(2, 10);
+    first = as_int(_mm512_shuffle_ps(even, odd, 0x88));
+    second = as_int(_mm512_shuffle_ps(even, odd, 0xDD));
   }
 
   static void prefetch_nodes(const void* nodes, const std::uint32_t* index) {
