@@ -27,7 +27,7 @@ inline typename V::F largest_of(typename V::F a, typename V::F b, typename V::F 
 template <class V>
 inline typename V::F edge_function(typename V::F ax, typename V::F ay, typename V::F bx,
                                    typename V::F by) {
-  return V::sub(V::mul(ax, by), V::mul(ay, bx));
+  return V::mul_sub(ax, by, V::mul(ay, bx));
 }
 
 /// Edge functions and z of the corners in float, and m (h + ...) of their error bound.
@@ -53,19 +53,19 @@ inline std::uint32_t outside_interval(const FilterRay<V>& ray, const FilterValue
   const F size = V::abs(sum);
   const F t[3] = {V::mul(f.z[0], ray.inv_dz), V::mul(f.z[1], ray.inv_dz),
                   V::mul(f.z[2], ray.inv_dz)};
-  const F weighted = V::add(V::add(V::mul(f.u, t[0]), V::mul(f.v, t[1])), V::mul(f.w, t[2]));
+  const F weighted = V::mul_add(f.w, t[2], V::mul_add(f.v, t[1], V::mul(f.u, t[0])));
   const F depth = V::turn_sign(weighted, sum);
   const F reach = largest_of<V>(t[0], t[1], t[2]);
   const F mh8 = V::mul(f.mh, V::set1(8.0F));
   const F vanished =
-      V::add(V::mul(size, V::set1(kVanishingT)), V::set1(kVanishingProduct));
+      V::mul_add(size, V::set1(kVanishingT), V::set1(kVanishingProduct));
   const auto error = [&](F bound) {
     const F g = V::add(reach, V::abs(bound));
-    const F certain = V::mul(V::mul(mh8, g), V::set1(0.75F * kFilterEdge));
-    return V::add(V::add(certain, V::mul(g, V::set1(kVanishingProduct))), vanished);
+    const F underflow = V::mul_add(g, V::set1(kVanishingProduct), vanished);
+    return V::mul_add(V::mul(mh8, g), V::set1(0.75F * kFilterEdge), underflow);
   };
-  const auto before = V::lt(depth, V::sub(V::mul(ray.t_min, size), error(ray.t_min)));
-  const auto beyond = V::lt(V::add(V::mul(ray.t_max, size), error(ray.t_max)), depth);
+  const auto before = V::lt(depth, V::mul_sub(ray.t_min, size, error(ray.t_min)));
+  const auto beyond = V::lt(V::mul_add(ray.t_max, size, error(ray.t_max)), depth);
   const auto sure = V::lt(V::mul(e, V::set1(4.0F)), size);
   return V::bits(V::both(sure, V::either(before, beyond)));
 }
@@ -81,8 +81,8 @@ inline std::uint32_t may_be_hit(const FilterRay<V>& ray, const float* block) {
   for (std::size_t c = 0; c < 3; ++c) {
     const float* corner = block + c * kCorner;
     f.z[c] = V::sub(V::load(corner + ray.z), ray.oz);
-    x[c] = V::sub(V::sub(V::load(corner + ray.x), ray.ox), V::mul(ray.sx, f.z[c]));
-    y[c] = V::sub(V::sub(V::load(corner + ray.y), ray.oy), V::mul(ray.sy, f.z[c]));
+    x[c] = V::sub_mul(V::sub(V::load(corner + ray.x), ray.ox), ray.sx, f.z[c]);
+    y[c] = V::sub_mul(V::sub(V::load(corner + ray.y), ray.oy), ray.sy, f.z[c]);
   }
   f.u = edge_function<V>(x[2], y[2], x[1], y[1]);
   f.v = edge_function<V>(x[0], y[0], x[2], y[2]);
@@ -90,8 +90,8 @@ inline std::uint32_t may_be_hit(const FilterRay<V>& ray, const float* block) {
   const F h = V::max(largest_of<V>(x[0], x[1], x[2]), largest_of<V>(y[0], y[1], y[2]));
   const F m = V::add(h, largest_of<V>(f.z[0], f.z[1], f.z[2]));
   // m (h + ...) first: where a product of corners overflows, so does this, and the lane passes.
-  f.mh = V::mul(m, V::add(h, V::mul(V::set1(kFilterCorner), m)));
-  const F e = V::add(V::mul(f.mh, V::set1(kFilterEdge)), V::set1(kFilterUnderflow));
+  f.mh = V::mul(m, V::mul_add(V::set1(kFilterCorner), m, h));
+  const F e = V::mul_add(f.mh, V::set1(kFilterEdge), V::set1(kFilterUnderflow));
   const F least = V::min(V::min(f.u, f.v), f.w);
   const F most = V::max(V::max(f.u, f.v), f.w);
   const auto missed = V::both(V::lt(least, V::turn_sign(e, V::set1(-1.0F))), V::lt(e, most));

@@ -121,14 +121,18 @@ class PacketWalk {
       return true;
     }
     packet.fetched = false;
-    const std::int32_t n = __builtin_popcount(packet.now.lanes);
-    counts_.leaf_visits += static_cast<std::uint32_t>(n);
-    counts_.lane_slots += kW;
-    packet.credit = credit_after(packet.credit, n);
+    count_visit(packet, packet.now.lanes);
     if (node.word != 0) {
       rays.waiting &= ~leaf_.packet(rays, packet.now.lanes, node.place >> 2, node.word);
     }
     return pop(packet, rays);
+  }
+
+  void count_visit(Packet& packet, std::uint32_t lanes) const {
+    const std::int32_t n = __builtin_popcount(lanes);
+    counts_.leaf_visits += static_cast<std::uint32_t>(n);
+    counts_.lane_slots += kW;
+    packet.credit = credit_after(packet.credit, n);
   }
 
   // A step that n rays took part in.
@@ -196,19 +200,24 @@ class PacketWalk {
     packet.now.lanes = lanes;
   }
 
-  // To the next cell that a ray has to visit. False when there is none.
+  // To the next cell that a ray has to visit and that is no empty leaf. False when there is none.
   bool pop(Packet& packet, Batch& rays) const {
+    const auto* const nodes = static_cast<const Node*>(query_.nodes);
     while (packet.size > 0) {
       const Cell& cell = packet.stack[--packet.size];
       const F t0 = V::load(cell.t0);
       const std::uint32_t beyond = V::bits(V::lt(V::load(rays.limit), t0));
       const std::uint32_t met = cell.lanes & rays.waiting & ~beyond;
       if (met == 0) continue;
+      const Node node = nodes[cell.node];
+      if (node.word == 0 && (node.place & 3U) == 3U) {
+        count_visit(packet, met);
+        continue;
+      }
       V::store(packet.now.t0, t0);
       V::store(packet.now.t1, V::load(cell.t1));
       packet.now.node = cell.node;
       packet.now.lanes = met;
-      __builtin_prefetch(static_cast<const Node*>(query_.nodes) + cell.node);
       return true;
     }
     rays.waiting = 0;

@@ -71,14 +71,16 @@ class RaySource {
 
   /// Makes the rays of the first `n` indices of the batch ready; those that meet the root's box wait.
   [[gnu::noinline]] void prepare(Batch& batch, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const float* const ray = query_.rays + 8 * batch.index[i];
-      for (std::size_t k = 0; k < 8; ++k) raw_[k][i] = ray[k];
-    }
+    batch.waiting = 0;
+    if (n == 0) return;
+    const float* rays[kW];
+    for (std::size_t i = 0; i < kW; ++i) rays[i] = query_.rays + 8 * batch.index[i < n ? i : 0];
+    V::transpose(rays, raw_);
     const std::uint32_t given = (1U << n) - 1U;
-    const std::uint32_t usable = shear(batch) & given;
+    const std::uint32_t usable = invert(batch) & given;
     unusable_ += n - static_cast<std::size_t>(__builtin_popcount(usable));
-    batch.waiting = usable != 0 ? enter_root(batch) & usable : 0U;
+    if (usable != 0) batch.waiting = enter_root(batch) & usable;
+    if (batch.waiting != 0) shear(batch);
   }
 
   /// Where the ray that next() gave is.
@@ -110,8 +112,25 @@ class RaySource {
     return (V::bits(V::eq(V::load(batch.main_axis), V::set1(axis))) & waiting) == waiting;
   }
 
-  // The main axis and the slopes; a bit for every ray that can hit something.
-  std::uint32_t shear(Batch& batch) {
+  // The inverse direction; a bit for every ray that can hit something.
+  std::uint32_t invert(Batch& batch) const {
+    const F d[3] = {V::load(raw_[4]), V::load(raw_[5]), V::load(raw_[6])};
+    const F longest = V::larger_magnitude(V::larger_magnitude(d[0], d[1]), d[2]);
+    M usable = V::both(V::le(V::abs(d[0]), V::set1(kMaxDirection)),
+                       V::le(V::set1(kMinDirection), longest));
+    for (std::size_t k = 1; k < 3; ++k) {
+      usable = V::both(usable, V::le(V::abs(d[k]), V::set1(kMaxDirection)));
+    }
+    usable = V::both(usable, V::le(V::load(raw_[3]), V::load(raw_[7])));
+    for (std::size_t k = 0; k < 3; ++k) {
+      usable = V::both(usable, V::le(V::abs(V::load(raw_[k])), V::set1(kLargestFloat)));
+      V::store(batch.inv_d[k], V::div(V::set1(1.0F), d[k]));
+    }
+    return V::bits(usable);
+  }
+
+  // The main axis and the slopes.
+  void shear(Batch& batch) const {
     const F d[3] = {V::load(raw_[4]), V::load(raw_[5]), V::load(raw_[6])};
     const F ax = V::abs(d[0]);
     const F ay = V::abs(d[1]);
@@ -126,15 +145,6 @@ class RaySource {
     V::store(batch.sx, V::div(dx, dz));
     V::store(batch.sy, V::div(dy, dz));
     keep_shear(batch, axis, dx, dy, dz);
-    const F most = V::set1(kMaxDirection);
-    M usable = V::both(V::both(V::le(ax, most), V::le(ay, most)), V::le(az, most));
-    usable = V::both(usable, V::le(V::set1(kMinDirection), V::abs(dz)));
-    usable = V::both(usable, V::le(V::load(raw_[3]), V::load(raw_[7])));
-    for (std::size_t k = 0; k < 3; ++k) {
-      usable = V::both(usable, V::le(V::abs(V::load(raw_[k])), V::set1(kLargestFloat)));
-      V::store(batch.inv_d[k], V::div(V::set1(1.0F), d[k]));
-    }
-    return V::bits(usable);
   }
 
   // The slopes in double, as shear_ray has them.

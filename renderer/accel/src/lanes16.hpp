@@ -56,6 +56,10 @@ struct Lanes16 {
   static F sub(F a, F b) { return _mm512_sub_ps(a, b); }
   static F mul(F a, F b) { return _mm512_mul_ps(a, b); }
   static F div(F a, F b) { return _mm512_div_ps(a, b); }
+  /// a b + c, a b - c and c - a b, rounded once.
+  static F mul_add(F a, F b, F c) { return _mm512_fmadd_ps(a, b, c); }
+  static F mul_sub(F a, F b, F c) { return _mm512_fmsub_ps(a, b, c); }
+  static F sub_mul(F c, F a, F b) { return _mm512_fnmadd_ps(a, b, c); }
   /// a < b ? a : b, so b if one is NaN.
   static F min(F a, F b) { return _mm512_min_ps(a, b); }
   /// a > b ? a : b, so b if one is NaN.
@@ -110,6 +114,28 @@ struct Lanes16 {
     const F odd = eight(2, 10);
     first = as_int(_mm512_shuffle_ps(even, odd, 0x88));
     second = as_int(_mm512_shuffle_ps(even, odd, 0xDD));
+  }
+
+  /// Eight floats from each of the rows; out[k] holds number k of every row.
+  static void transpose(const float* const* rows, float (*out)[kWidth]) {
+    for (int half = 0; half < 8; half += 4) {
+      const auto four = [&](int i) {
+        const auto part = [&](int row) { return _mm_loadu_ps(rows[row] + half); };
+        F v = _mm512_castps128_ps512(part(i));
+        v = _mm512_insertf32x4(v, part(i + 4), 1);
+        v = _mm512_insertf32x4(v, part(i + 8), 2);
+        return _mm512_insertf32x4(v, part(i + 12), 3);
+      };
+      const F rows0 = four(0), rows1 = four(1), rows2 = four(2), rows3 = four(3);
+      const F lo01 = _mm512_unpacklo_ps(rows0, rows1);
+      const F lo23 = _mm512_unpacklo_ps(rows2, rows3);
+      const F hi01 = _mm512_unpackhi_ps(rows0, rows1);
+      const F hi23 = _mm512_unpackhi_ps(rows2, rows3);
+      store(out[half], _mm512_shuffle_ps(lo01, lo23, 0x44));
+      store(out[half + 1], _mm512_shuffle_ps(lo01, lo23, 0xEE));
+      store(out[half + 2], _mm512_shuffle_ps(hi01, hi23, 0x44));
+      store(out[half + 3], _mm512_shuffle_ps(hi01, hi23, 0xEE));
+    }
   }
 
   static void prefetch_nodes(const void* nodes, const std::uint32_t* index) {

@@ -63,6 +63,10 @@ struct Lanes8 {
   static F sub(F a, F b) { return _mm256_sub_ps(a, b); }
   static F mul(F a, F b) { return _mm256_mul_ps(a, b); }
   static F div(F a, F b) { return _mm256_div_ps(a, b); }
+  /// a b + c, a b - c and c - a b, rounded once.
+  static F mul_add(F a, F b, F c) { return _mm256_fmadd_ps(a, b, c); }
+  static F mul_sub(F a, F b, F c) { return _mm256_fmsub_ps(a, b, c); }
+  static F sub_mul(F c, F a, F b) { return _mm256_fnmadd_ps(a, b, c); }
   /// a < b ? a : b, so b if one is NaN.
   static F min(F a, F b) { return _mm256_min_ps(a, b); }
   /// a > b ? a : b, so b if one is NaN.
@@ -123,6 +127,24 @@ struct Lanes8 {
     const __m256 hi = _mm256_castpd_ps(_mm256_set_m128d(pair(6, 7), pair(2, 3)));
     first = as_int(_mm256_shuffle_ps(lo, hi, 0x88));
     second = as_int(_mm256_shuffle_ps(lo, hi, 0xDD));
+  }
+
+  /// Eight floats from each of the rows; out[k] holds number k of every row.
+  static void transpose(const float* const* rows, float (*out)[kWidth]) {
+    for (int half = 0; half < 8; half += 4) {
+      const auto two = [&](int i) {
+        return _mm256_set_m128(_mm_loadu_ps(rows[i + 4] + half), _mm_loadu_ps(rows[i] + half));
+      };
+      const F rows0 = two(0), rows1 = two(1), rows2 = two(2), rows3 = two(3);
+      const F lo01 = _mm256_unpacklo_ps(rows0, rows1);
+      const F lo23 = _mm256_unpacklo_ps(rows2, rows3);
+      const F hi01 = _mm256_unpackhi_ps(rows0, rows1);
+      const F hi23 = _mm256_unpackhi_ps(rows2, rows3);
+      store(out[half], _mm256_shuffle_ps(lo01, lo23, 0x44));
+      store(out[half + 1], _mm256_shuffle_ps(lo01, lo23, 0xEE));
+      store(out[half + 2], _mm256_shuffle_ps(hi01, hi23, 0x44));
+      store(out[half + 3], _mm256_shuffle_ps(hi01, hi23, 0xEE));
+    }
   }
 
   static void prefetch_nodes(const void* nodes, const std::uint32_t* index) {
