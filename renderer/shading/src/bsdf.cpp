@@ -183,19 +183,41 @@ void make(Bsdf& b, const Material& material, const Vec3f& ng, const Vec3f& ns, c
   }
 }
 
-template <Sides kSides>
-BsdfSample sample(const Bsdf& b, const DirectionNumbers& numbers) {
+/// The numbers of a vertex as they are asked for: a mirror asks for none, a clear border for one.
+struct NumbersOnDemand {
+  const VertexKey& vertex;
+  [[nodiscard]] double lobe() const { return uniform(vertex, Dimension::kLobeChoice); }
+  [[nodiscard]] double side() const { return uniform(vertex, Dimension::kFresnelChoice); }
+  [[nodiscard]] double u() const { return uniform(vertex, Dimension::kDirectionU); }
+  [[nodiscard]] double v() const { return uniform(vertex, Dimension::kDirectionV); }
+};
+struct GivenNumbers {
+  const DirectionNumbers& numbers;
+  [[nodiscard]] double lobe() const { return numbers.lobe; }
+  [[nodiscard]] double side() const { return numbers.side; }
+  [[nodiscard]] double u() const { return numbers.u; }
+  [[nodiscard]] double v() const { return numbers.v; }
+};
+
+/// Is a number of [0, 1) below this share? It is drawn only where that is open.
+template <class Draw>
+bool falls_below(double share, const Draw& draw) {
+  return share >= 1.0 || (share > 0.0 && draw() < share);
+}
+
+template <Sides kSides, class Numbers>
+BsdfSample sample(const Bsdf& b, const Numbers& numbers) {
   if (b.black) return {};
-  const auto& [lobe, side, u, v] = numbers;
   if (b.model.direction_sampling == DirectionSampling::kUniformSphere) {
-    BsdfSample found = finish<kSides>(b, sample_uniform_sphere(u, v), Lobe::kNone, false, {});
+    BsdfSample found = finish<kSides>(b, sample_uniform_sphere(numbers.u(), numbers.v()), Lobe::kNone, false, {});
     if (found.pdf > 0.0) found.lobe = Lobe::kDiffuse;
     return found;
   }
-  const bool specular = lobe < b.choice.specular;
+  const bool specular = falls_below(b.choice.specular, [&] { return numbers.lobe(); });
   const double through_share = specular ? b.choice.specular_through : b.choice.diffuse_through;
-  const bool through = side < through_share;
+  const bool through = falls_below(through_share, [&] { return numbers.side(); });
   if (specular && b.exponent >= kLargestExponent) return axis_itself<kSides>(b, through);
+  const double u = numbers.u(), v = numbers.v();
   if (specular) {
     const double x = sample_one_minus_cos(u, b.exponent);
     return finish<kSides>(b, around_axis(through ? b.refracted : b.mirror, x, v), Lobe::kSpecular,
@@ -236,6 +258,10 @@ OpaqueBsdf make_opaque_bsdf(const Material& material, const Vec3f& ng, const Vec
   return b;
 }
 
+bool scatters_along_axes_alone(const Bsdf& b) {
+  return b.exponent >= kLargestExponent && b.diffuse_same == Rgbd(0.0) && b.diffuse_through == Rgbd(0.0);
+}
+
 BsdfValue evaluate(const Bsdf& b, const Vec3f& wi) {
   return evaluate_with<Sides::kBoth>(b, wi, {});
 }
@@ -244,13 +270,13 @@ BsdfValue evaluate(const OpaqueBsdf& b, const Vec3f& wi) {
 }
 
 BsdfSample sample_bsdf(const Bsdf& b, const DirectionNumbers& numbers) {
-  return sample<Sides::kBoth>(b, numbers);
+  return sample<Sides::kBoth>(b, GivenNumbers{numbers});
 }
 BsdfSample sample_bsdf(const Bsdf& b, const VertexKey& vertex) {
-  return sample<Sides::kBoth>(b, direction_numbers(vertex));
+  return sample<Sides::kBoth>(b, NumbersOnDemand{vertex});
 }
 BsdfSample sample_bsdf(const OpaqueBsdf& b, const VertexKey& vertex) {
-  return sample<Sides::kNear>(b, direction_numbers(vertex));
+  return sample<Sides::kNear>(b, NumbersOnDemand{vertex});
 }
 
 }  // namespace raykiln::render

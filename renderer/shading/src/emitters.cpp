@@ -1,6 +1,7 @@
 #include "raykiln/shading/emitters.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "raykiln/sampling/warp.hpp"
 #include "raykiln/shading/coverage.hpp"
@@ -61,6 +62,7 @@ Emitters::Emitters(const Scene& scene) {
     if (!(weight > 0.0)) continue;
     triangles_.push_back(id);
     power.push_back(weight);
+    for (const std::uint32_t corner : scene.mesh.triangles[id]) box_.grow(scene.mesh.positions[corner]);
   }
   distribution_ = DiscreteDistribution(power);
   if (has_triangles()) {
@@ -72,6 +74,28 @@ Emitters::Emitters(const Scene& scene) {
   spot_lights_ = shining(scene.spot_lights, &SpotLight::intensity);
   directional_lights_ = shining(scene.directional_lights, &DirectionalLight::irradiance);
   environment_ = environment_of(scene);
+}
+
+// A point s away lies no farther than s times the width from the place s along the axis, and s is at most the way
+// to the box's farthest corner: the half line is met with a box that is larger by that, and by as much again and
+// more than doubles round for safety.
+bool Emitters::may_lie_along(const Vec3d& from, const Vec3f& axis, double width) const {
+  const Vec3d lo(box_.lo), hi(box_.hi), d(axis);
+  const double farthest = length(glm::max(abs(lo - from), abs(hi - from)));
+  const Vec3d coordinates = abs(from) + abs(lo) + abs(hi);
+  const double margin = 2.0 * width * farthest + 0x1p-40 * (coordinates.x + coordinates.y + coordinates.z);
+  double enter = 0.0, leave = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const double below = lo[k] - margin - from[k], above = hi[k] + margin - from[k];
+    if (d[k] == 0.0) {
+      if (below > 0.0 || above < 0.0) return false;
+      continue;
+    }
+    const double t0 = below / d[k], t1 = above / d[k];
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  return !(enter > leave);
 }
 
 EmitterSample Emitters::point_on(const Scene& scene, std::uint32_t triangle,

@@ -11,6 +11,7 @@ using support::at_degrees;
 using support::bsdf_at;
 using support::kUp;
 using support::make_material;
+using support::kPhysicalBsdf;
 using support::numbered;
 
 TEST(BsdfSides, ValuesOfTheSeedsFormulas) {
@@ -127,6 +128,44 @@ TEST(BsdfSides, AtTheLargestExponentAMirrorTakesNothingAndAPaneIsNotThere) {
         EXPECT_EQ(through.wi, -wo) << m.name << ' ' << degrees;
         EXPECT_NEAR(through.weight.x, 1.0, 4e-16) << m.name << ' ' << degrees;
       }
+    }
+  }
+}
+
+/// What a vertex shader leaves out for them is 0.
+TEST(BsdfSides, MirrorsAndClearBordersScatterAlongTheirAxesAlone) {
+  for (const float transparent : {0.0F, 0.5F, 1.0F}) {
+    for (const double degrees : {1.0, 45.0, 80.0}) {
+      const Bsdf b = bsdf_at(make_material(0, 0.9F, transparent, kLargestExponent), at_degrees(degrees), kPhysicalBsdf);
+      EXPECT_TRUE(scatters_along_axes_alone(b));
+      for (const Vec3f& axis : {b.mirror, b.refracted}) {
+        if (axis == Vec3f(0.0F)) continue;
+        const Vec3d aside = normalize(cross(Vec3d(axis), Vec3d(0.3, 0.9, -0.2)));
+        for (const double distance : {1.0001, 3.0, 1e3}) {
+          const Vec3f wi(normalize(Vec3d(axis) + distance * kAxisWidth * aside));
+          EXPECT_EQ(evaluate(b, wi).f_cos, Rgbd(0.0)) << transparent << ' ' << degrees << ' ' << distance;
+        }
+      }
+    }
+  }
+  EXPECT_FALSE(scatters_along_axes_alone(bsdf_at(make_material(0, 0.9F, 1, 1e14), kUp, kPhysicalBsdf)));
+  EXPECT_FALSE(scatters_along_axes_alone(bsdf_at(make_material(0.1F, 0.9F, 1, kLargestExponent), kUp, kPhysicalBsdf)));
+}
+
+/// Numbers that no lobe asks for are not drawn; the sample is that of all four.
+TEST(BsdfSides, NumbersOnDemandGiveTheSameSample) {
+  std::vector<support::NamedMaterial> materials = support::lobe_materials();
+  materials.push_back({"mirror", make_material(0, 0.9F, 0, kLargestExponent)});
+  materials.push_back({"clear", make_material(0, 1, 1, kLargestExponent)});
+  for (const auto& [name, material] : materials) {
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      const Bsdf b = bsdf_at(material, at_degrees(1.0 + static_cast<double>(i % 89)), kPhysicalBsdf);
+      const VertexKey key = vertex_key(path_key(5, i, 0), 0, 0);
+      const BsdfSample all = sample_bsdf(b, direction_numbers(key)), few = sample_bsdf(b, key);
+      EXPECT_EQ(all.wi, few.wi) << name;
+      EXPECT_EQ(all.weight, few.weight) << name;
+      EXPECT_EQ(all.pdf, few.pdf) << name;
+      EXPECT_EQ(all.lobe, few.lobe) << name;
     }
   }
 }

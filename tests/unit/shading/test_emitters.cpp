@@ -40,6 +40,40 @@ TEST(Emitters, DrawnByAreaAndLargestChannel) {
   EXPECT_NEAR(first / kCount, 0.25, 4.0 * std::sqrt(0.1875 / kCount));
 }
 
+/// Axes anywhere, and aimed at points of emitters to within the width.
+TEST(Emitters, NoPointLiesAlongAnAxisThatMissesTheirBox) {
+  const Scene scene = triangles_of({{1.0F, Rgb(1.0F)}, {0.5F, Rgb(2.0F)}});
+  const Emitters emitters(scene);
+  constexpr double kWidth = 2e-6;
+  int missed = 0;
+  for (std::uint64_t i = 0; i < 4000; ++i) {
+    const VertexKey key = vertex_key(path_key(3, i, 0), 0, 0);
+    const auto number = [&](Dimension d) { return 2.0 * uniform(key, d) - 1.0; };
+    const double far = std::pow(10.0, static_cast<double>(i % 7) - 3.0);
+    const Vec3d from = far * Vec3d(number(Dimension::kLensX), number(Dimension::kLensY), number(Dimension::kLobeChoice));
+    const EmitterSample sample = emitters.sample(scene, key);
+    const Vec3d to = normalize(sample.point.p - from);
+    const Vec3d aside(number(Dimension::kPixelX), number(Dimension::kPixelY), number(Dimension::kFresnelChoice));
+    const Vec3f aimed(normalize(to + 0.9 * kWidth * normalize(cross(to, aside))));
+    EXPECT_TRUE(emitters.may_lie_along(from, aimed, kWidth)) << i;
+    const Vec3f axis(normalize(aside));
+    if (emitters.may_lie_along(from, axis, kWidth)) continue;
+    ++missed;
+    EXPECT_GT(length(to - Vec3d(axis)), kWidth) << i;
+  }
+  EXPECT_GT(missed, 1000);
+}
+
+TEST(Emitters, AxesAlongThePlanesOfTheirBox) {
+  const Scene scene = triangles_of({{1.0F, Rgb(1.0F)}});
+  const Emitters emitters(scene);
+  EXPECT_TRUE(emitters.may_lie_along({-5.0, 0.5, 0.0}, {1, 0, 0}, 2e-6));
+  EXPECT_TRUE(emitters.may_lie_along({-5.0, 0.0, 0.0}, {1, 0, 0}, 2e-6));
+  EXPECT_FALSE(emitters.may_lie_along({-5.0, 0.5, 0.0}, {-1, 0, 0}, 2e-6));
+  EXPECT_FALSE(emitters.may_lie_along({-5.0, 0.5, 0.1}, {1, 0, 0}, 2e-6));
+  EXPECT_TRUE(emitters.may_lie_along({0.25, 0.25, 7.0}, {0, 0, -1}, 2e-6));
+}
+
 TEST(Emitters, NothingShines) {
   Scene scene = triangles_of({{1.0F, Rgb(0.0F)}});
   scene.point_lights.push_back({});

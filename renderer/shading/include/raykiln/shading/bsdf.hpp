@@ -81,6 +81,14 @@ struct BsdfSample {
 [[nodiscard]] OpaqueBsdf make_opaque_bsdf(const Material& material, const Vec3f& ng,
                                           const Vec3f& ns, const Vec3f& wo, const BsdfModel& model);
 
+/// True for mirrors and clear borders: evaluate() is 0 for all directions farther than kAxisWidth from `mirror`, or,
+/// where there is a border, `refracted`.
+[[nodiscard]] bool scatters_along_axes_alone(const Bsdf& bsdf);
+
+/// Distance of two unit vectors. At kLargestExponent exp underflows from |a - b|^2 / 2 = 745 / 1e15 on, at a distance
+/// of 1.3e-6; what rounding three floats moves a vector by, 1.1e-7, is well within the rest.
+inline constexpr double kAxisWidth = 2e-6;
+
 [[nodiscard]] BsdfValue evaluate(const Bsdf& bsdf, const Vec3f& wi);
 [[nodiscard]] BsdfValue evaluate(const OpaqueBsdf& bsdf, const Vec3f& wi);
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "raykiln/math/ray.hpp"
 #include "raykiln/sampling/discrete_distribution.hpp"
 #include "raykiln/sampling/random.hpp"
 #include "raykiln/scene/scene.hpp"
@@ -67,6 +68,10 @@ class Emitters {
     return weights_[material] / distribution_.total();
   }
 
+  /// False only if no point that sample() can find lies within a distance of `width` of the unit vector `axis`, as a
+  /// unit vector from `from`: by the box of all emitting triangles.
+  [[nodiscard]] bool may_lie_along(const Vec3d& from, const Vec3f& axis, double width) const;
+
   /// Is the tree to be used where this is asked for?
   [[nodiscard]] bool by_tree(EmitterChoice choice) const {
     if (choice == EmitterChoice::kAuto) return triangles_.size() >= kTreeFrom;
@@ -96,6 +101,7 @@ class Emitters {
                                        const VertexKey& vertex) const;
 
   std::vector<std::uint32_t> triangles_;  ///< ascending
+  Bounds3f box_;                          ///< of them
   std::unique_ptr<TreeOnDemand> tree_;    ///< over triangles_; null without
   std::size_t tree_bytes_ = 0;
   DiscreteDistribution distribution_;
