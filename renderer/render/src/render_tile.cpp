@@ -14,31 +14,27 @@ constexpr std::size_t kMostLocated = 16;     ///< bad samples that a result name
 class TaskOrder {
  public:
   TaskOrder(const PixelRect& rect, std::span<const SampleBlock> blocks)
-      : rect_(rect), blocks_(blocks) {}
-
-  struct Item {
-    std::size_t block = 0, pixel = 0;
-    PathStart start;
-  };
-
-  [[nodiscard]] bool done() const { return block_ == blocks_.size(); }
-
-  [[nodiscard]] Item item() const {
-    const auto width = static_cast<std::size_t>(rect_.width());
-    return {.block = block_,
-            .pixel = pixel_,
-            .start = {.x = rect_.x0 + static_cast<int>(pixel_ % width),
-                      .y = rect_.y0 + static_cast<int>(pixel_ / width),
-                      .sample = blocks_[block_].first + sample_}};
+      : rect_(rect), blocks_(blocks), x_(rect.x0), y_(rect.y0) {
+    skip_finished_blocks();
   }
 
+  [[nodiscard]] bool done() const { return block_ == blocks_.size(); }
+  [[nodiscard]] std::size_t block() const { return block_; }
+  [[nodiscard]] std::size_t pixel() const { return pixel_; }
+  [[nodiscard]] PathStart start() const { return {.x = x_, .y = y_, .sample = blocks_[block_].first + sample_}; }
+
   void step() {
-    if (++pixel_ < rect_.pixels()) return;
+    ++pixel_;
+    if (++x_ < rect_.x1) return;
+    x_ = rect_.x0;
+    if (++y_ < rect_.y1) return;
+    y_ = rect_.y0;
     pixel_ = 0;
     ++sample_;
     skip_finished_blocks();
   }
 
+ private:
   void skip_finished_blocks() {
     while (block_ < blocks_.size() && sample_ >= blocks_[block_].count) {
       sample_ = 0;
@@ -46,23 +42,31 @@ class TaskOrder {
     }
   }
 
- private:
   PixelRect rect_;
   std::span<const SampleBlock> blocks_;
   std::size_t block_ = 0, pixel_ = 0;
+  int x_, y_;
   std::uint64_t sample_ = 0;
 };
 
 /// Adds a traced sample to its block and keeps count of what was wrong with it. False when it was dropped.
-bool keep(TileResult& result, const TaskOrder::Item& item, const PathResult& path) {
+bool keep(TileResult& result, const TaskOrder& at, const PathResult& path) {
   const Rgbd radiance = path.radiance();
   if (radiance.x < 0.0 || radiance.y < 0.0 || radiance.z < 0.0) ++result.stats.negative;
-  if (add_sample(result.blocks[item.block].planes, item.pixel, radiance, path.truncated)) return true;
+  if (add_sample(result.blocks[at.block()].planes, at.pixel(), radiance, path.truncated)) return true;
   ++result.stats.non_finite;
   if (result.bad_samples.size() < kMostLocated) {
-    result.bad_samples.push_back({item.start.x, item.start.y, item.start.sample});
+    const PathStart start = at.start();
+    result.bad_samples.push_back({start.x, start.y, start.sample});
   }
   return false;
+}
+
+/// Samples of all blocks and pixels, saturated.
+std::size_t paths_of(const PixelRect& rect, std::span<const SampleBlock> blocks, std::size_t most) {
+  std::uint64_t samples = 0;
+  for (const SampleBlock& block : blocks) samples += std::min<std::uint64_t>(block.count, most);
+  return samples >= most ? most : std::min(most, static_cast<std::size_t>(samples) * rect.pixels());
 }
 
 TileResult empty_result(const PixelRect& rect, std::span<const SampleBlock> blocks, const LayerSet& layers) {
@@ -85,29 +89,25 @@ TileResult render_tile(const PreparedScene& scene, const RenderSettings& setting
   const CameraRays camera = camera_rays(scene, settings);
   PathTracer tracer({scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids()}, camera,
                     path_settings(scene, settings));
-  std::vector<TaskOrder::Item> items;
   std::vector<PathStart> starts;
   std::vector<PathResult> paths;
   std::vector<LayerSample> layers;
+  starts.reserve(paths_of(rect, blocks, kWindowPaths));
   TaskOrder order(rect, blocks);
-  order.skip_finished_blocks();
   while (!order.done()) {
-    items.clear();
+    TaskOrder traced = order;
     starts.clear();
-    for (; !order.done() && items.size() < kWindowPaths; order.step()) {
-      items.push_back(order.item());
-      starts.push_back(items.back().start);
-    }
-    paths.resize(items.size());
-    if (!settings.layers.empty()) layers.resize(items.size());
+    for (; !order.done() && starts.size() < kWindowPaths; order.step()) starts.push_back(order.start());
+    paths.resize(starts.size());
+    if (!settings.layers.empty()) layers.resize(starts.size());
     if (!tracer.trace(starts, paths, result.stats, stop, layers)) {
       result.stopped = true;
       return result;
     }
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const bool counts = keep(result, items[i], paths[i]);
+    for (std::size_t i = 0; i < starts.size(); ++i, traced.step()) {
+      const bool counts = keep(result, traced, paths[i]);
       if (layers.empty()) continue;
-      add_sample(result.layers[items[i].block], items[i].pixel, items[i].start.sample, layers[i], counts);
+      add_sample(result.layers[traced.block()], traced.pixel(), starts[i].sample, layers[i], counts);
     }
   }
   return result;
