@@ -187,6 +187,55 @@ TEST_F(SameBytes, ForEveryKernelAndChoiceOfEmitters) {
   }
 }
 
+/// Where kernels shoot camera rays: from within the geometry, at its edge, from far off and past it; in the middle of
+/// pixels and anywhere; a part of a larger picture; samples of the first and of late replicates.
+TEST_F(SameBytes, ForEveryKernelWhereverPathsBegin) {
+  std::vector<RenderSettings> starts(5, small_settings());
+  starts[1].pixel_mode = PixelMode::kCentre;
+  starts[2].crop = Crop{50, 7, 130, 90};
+  Camera far, past;
+  far.eye = {0.0, 0.0, 1e5};
+  far.fov_y_rad = 3e-5;
+  past.eye = {0.0, 1.0, 3.0};
+  past.fov_y_rad = 1.5;
+  starts[3].own_camera = far;
+  starts[4].own_camera = past;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    for (const Sampler sampler : {Sampler::kRandom, Sampler::kSobol}) {
+      starts[i].sampler = sampler;
+      for (const std::uint64_t index : {std::uint64_t{3}, std::uint64_t{9}, std::uint64_t{1} << 33}) {
+        const std::vector<SampleBlock> blocks{sample_block(index)};
+        Film reference(kWidth, kHeight);
+        starts[i].traversal = Traversal::kScalar;
+        render_into(reference, *scene_, starts[i], blocks, {});
+        for (const Traversal kernel : {Traversal::kAvx2, Traversal::kAvx512}) {
+          starts[i].traversal = kernel;
+          Film film(kWidth, kHeight);
+          render_into(film, *scene_, starts[i], blocks, {1, 7, 1});
+          expect_same(reference, film, "start " + std::to_string(i) + ", " + std::string(name(kernel)));
+        }
+      }
+    }
+  }
+}
+
+/// Mirrors and clear borders draw no point of an emitter that cannot be seen in them; the general loop always does.
+TEST_F(SameBytes, WithMirrorsThatAskForNoEmitters) {
+  support::SceneBuilder room = support::mixed_room(kLargestExponent);
+  const auto scene = room.prepare();
+  for (const Sampler sampler : {Sampler::kRandom, Sampler::kSobol}) {
+    for (const EmitterChoice choice : {EmitterChoice::kPower, EmitterChoice::kTree}) {
+      RenderSettings settings = small_settings();
+      settings.sampler = sampler;
+      settings.emitter_choice = choice;
+      const Film lean = render(*scene, settings, 16, {});
+      EXPECT_GT(lean.plane("beauty")[0], 0.0);
+      settings.effects = effect_choice_of("all").value();
+      expect_same(render(*scene, settings, 16, {}), lean, "all effects");
+    }
+  }
+}
+
 TEST_F(SameBytes, WithBranches) {
   RenderSettings settings = small_settings();
   settings.branches = 3;

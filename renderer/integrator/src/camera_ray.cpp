@@ -75,6 +75,11 @@ CameraRays::Sight CameraRays::through_lens(double x, double y, const VertexKey& 
 
 Vec3f CameraRays::direction(double x, double y) const { return Vec3f(sight(x, y).towards); }
 
+std::optional<CameraRays::Pinhole> CameraRays::pinhole() const {
+  if (camera_.projection != Projection::kPerspective || camera_.lens.radius > 0.0) return std::nullopt;
+  return Pinhole{camera_.eye, corner_, step_x_, step_y_, lo_, hi_};
+}
+
 PathCone CameraRays::cone(const Ray& ray) const {
   const double pixel = length(step_x_);
   if (camera_.projection == Projection::kOrthographic) return {pixel, 0.0};

@@ -79,8 +79,12 @@ inline V3 wide(const V3f& a) { return {wide(a.x), wide(a.y), wide(a.z)}; }
 inline V3f narrow(const V3& a) { return {narrow(a.x), narrow(a.y), narrow(a.z)}; }
 inline V3f operator-(const V3f& a, const V3f& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
-/// An integer below 2^53 as a double: both halves are joined with exponents of their own.
+/// An integer below 2^53 as a double: where the processor does not know it, both halves are joined with exponents of
+/// their own.
 inline F64 as_double(U64 v) {
+#if defined(__AVX512DQ__)
+  return __builtin_convertvector(v, F64);
+#endif
   const F64 high = as<F64>((v >> 32) | 0x4530000000000000U);            // 2^84 + high 2^32
   const F64 low = as<F64>((v & 0xFFFFFFFFU) | 0x4330000000000000U);     // 2^52 + low
   return (high - 0x1.00000001p84) + low;
@@ -110,12 +114,23 @@ inline F64 plain_number(const Keys& key, std::uint64_t slot) {
   return as_double(mix(key.a + (slot + 1) * kGolden, key.b) >> 11) * 0x1p-53;
 }
 
+/// Bytes in the other order, then both halves of each by a table.
 inline U32 reversed(U32 x) {
-  x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
-  x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
-  x = ((x >> 4) & 0x0F0F0F0FU) | ((x & 0x0F0F0F0FU) << 4);
-  x = ((x >> 8) & 0x00FF00FFU) | ((x & 0x00FF00FFU) << 8);
-  return (x >> 16) | (x << 16);
+  constexpr char kTurned[16] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+  constexpr char kBytes[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
+  const __m128i turned = load<__m128i>(kTurned), bytes = load<__m128i>(kBytes);
+  const U32 low = x & 0x0F0F0F0FU, high = (x >> 4) & 0x0F0F0F0FU;
+  if constexpr (kLanes == 8) {
+    const auto table = _mm256_broadcastsi128_si256(turned);
+    const U32 whole = (as<U32>(_mm256_shuffle_epi8(table, as<__m256i>(low))) << 4) |
+                      as<U32>(_mm256_shuffle_epi8(table, as<__m256i>(high)));
+    return as<U32>(_mm256_shuffle_epi8(as<__m256i>(whole), _mm256_broadcastsi128_si256(bytes)));
+  }
+  if constexpr (kLanes == 4) {
+    const U32 whole = (as<U32>(_mm_shuffle_epi8(turned, as<__m128i>(low))) << 4) |
+                      as<U32>(_mm_shuffle_epi8(turned, as<__m128i>(high)));
+    return as<U32>(_mm_shuffle_epi8(as<__m128i>(whole), bytes));
+  }
 }
 inline U32 scrambled(U32 x, U32 seed) {
   x ^= x * 0x3D20ADEAU;
@@ -132,9 +147,22 @@ inline U32 pascal_product(U32 x) {
   x ^= (x >> 8) & 0x00FF00FFU;
   return x ^ (x >> 16);
 }
-inline U32 product(const std::uint32_t* columns, U32 index) {
+/// `of_digits`: sobol::Columns, 16 words for each four digits of the index.
+inline U32 product(const std::uint32_t* of_digits, U32 index) {
   U32 x{};
-  for (unsigned j = 0; j < 32; ++j) x ^= (0U - ((index >> j) & 1U)) & columns[j];
+  for (int i = 0; i < 8; ++i) {
+    const auto first = load<__m256i>(of_digits + 16 * i), second = load<__m256i>(of_digits + 16 * i + 8);
+    const U32 digits = index >> (4 * i);
+#if defined(__AVX512VL__)
+    if constexpr (kLanes == 8) x ^= as<U32>(_mm256_permutex2var_epi32(first, as<__m256i>(digits), second));
+#endif
+    if constexpr (kLanes == 4) {
+      const __m256i three = _mm256_castsi128_si256(as<__m128i>(digits));
+      const auto below = _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(first, three));
+      const auto above = _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(second, three));
+      x ^= as<U32>(_mm_blendv_ps(as<__m128>(below), as<__m128>(above), as<__m128>(index << (28 - 4 * i))));
+    }
+  }
   return x;
 }
 
@@ -166,10 +194,10 @@ inline Pair pair_of(bool sobol, const Keys& key, std::uint64_t group, std::uint6
   return {sobol_number(g, 0, g.index), sobol_number(g, 1, pascal_product(g.index))};
 }
 /// The number of a slot that has the third.
-inline F64 third_of(bool sobol, const Keys& key, std::uint64_t slot, const std::uint32_t* columns) {
+inline F64 third_of(bool sobol, const Keys& key, std::uint64_t slot, const std::uint32_t* of_digits) {
   if (!sobol) return plain_number(key, slot);
   const SobolGroup g = sobol_group(key, slot / 4);
-  return sobol_number(g, 2, product(columns, g.index));
+  return sobol_number(g, 2, product(of_digits, g.index));
 }
 
 }  // namespace

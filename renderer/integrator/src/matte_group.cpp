@@ -3,22 +3,14 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "raykiln/accel/kernels.hpp"
+#include "lane_choice.hpp"
 #include "raykiln/shading/punctual_light.hpp"
 
 namespace raykiln::render {
 namespace {
 
-static_assert(sizeof(LaneRay) == sizeof(Ray) && sizeof(LaneHit) == sizeof(Hit));
-static_assert(offsetof(LaneHit, id) == offsetof(Hit, id) && offsetof(LaneHit, u) == offsetof(Hit, u));
-static_assert(sizeof(LanePath) == sizeof(PathState) && offsetof(PathState, key) == 0 &&
-              offsetof(LanePath, point) == offsetof(PathKey, point) &&
-              offsetof(LanePath, throughput) == offsetof(PathState, throughput) &&
-              offsetof(LanePath, scale) == offsetof(PathState, scale) &&
-              offsetof(LanePath, pdf) == offsetof(PathState, pdf) &&
-              offsetof(LanePath, node) == offsetof(PathState, node) &&
-              offsetof(LanePath, slot) == offsetof(PathState, slot) &&
-              offsetof(LanePath, bounce) == offsetof(PathState, bounce));
+static_assert(sizeof(LaneHit) == sizeof(Hit) && offsetof(LaneHit, id) == offsetof(Hit, id) &&
+              offsetof(LaneHit, u) == offsetof(Hit, u));
 static_assert(sizeof(LaneReceiver) == sizeof(EmitterReceiver) &&
               offsetof(LaneReceiver, both_sides) == offsetof(EmitterReceiver, both_sides));
 static_assert(offsetof(PathResult, emitted) == 0 && sizeof(PathResult) % sizeof(double) == 0);
@@ -28,17 +20,6 @@ constexpr std::size_t kMostMaterials = 4096;
 constexpr std::size_t kMostLights = 255;
 constexpr std::size_t kBatch = 256;
 constexpr std::size_t kBatchShadows = 4096;  ///< shadow rays of a batch
-
-MatteKernel kernel_for(Traversal traversal) {
-#ifdef RAYKILN_X86_KERNELS
-  const Traversal chosen = with_test(resolve(traversal), TriangleTest::kWatertight);
-  if (chosen == Traversal::kAvx512) return matte_kernel_avx512();
-  if (chosen == Traversal::kAvx2) return matte_kernel_avx2();
-#else
-  (void)traversal;
-#endif
-  return nullptr;
-}
 
 /// Is everything that these settings ask for at such a vertex in the kernel?
 bool covers(const Transport& t) {
@@ -72,7 +53,7 @@ void append(std::vector<float>& table, const Rgb& colour) {
 
 MatteGroup::MatteGroup(const Transport& transport) : mesh_(transport.mesh), max_depth_(transport.settings.max_depth) {
   if (mesh_.triangles.empty() || !covers(transport)) return;
-  kernel_ = kernel_for(transport.settings.traversal);
+  kernel_ = kernel_with(transport.settings.traversal, matte_kernel_avx512, matte_kernel_avx2);
   if (kernel_ == nullptr) return;
   if (transport.normals && !mesh_.corner_normals.empty()) corner_normals_ = mesh_.corner_normals.data();
   read_materials(transport.scene.materials);
@@ -89,10 +70,7 @@ MatteGroup::MatteGroup(const Transport& transport) : mesh_(transport.mesh), max_
   query_.bounces_before_roulette = static_cast<std::uint32_t>(kFirstDrawAfter);
   query_.roulette_factor = kRouletteFactor;
   query_.sobol = transport.settings.sampler == Sampler::kSobol;
-  for (std::size_t j = 0; j < sobol_third_.size(); ++j) {
-    sobol_third_[j] = sobol::kThird.of_digits[j / 4][std::size_t{1} << (j % 4)];
-  }
-  query_.sobol_third = sobol_third_.data();
+  query_.sobol_third = sobol::kThird.of_digits.front().data();
   query_.emitted_stride = sizeof(PathResult) / sizeof(double);
 }
 
@@ -133,14 +111,14 @@ void MatteGroup::shade(const Transport& transport, const ShadingRange& range, Sh
   PathStream& next = sinks.next;
   const std::size_t before = next.size();
   MatteQuery query = query_;
-  query.rays = reinterpret_cast<const LaneRay*>(range.front.rays.data() + range.begin);
+  query.rays = reinterpret_cast<const LaneRay*>(range.front.rays().data() + range.begin);
   query.hits = reinterpret_cast<const LaneHit*>(range.hits.data());
-  query.paths = reinterpret_cast<const LanePath*>(range.front.states.data() + range.begin);
+  query.paths = reinterpret_cast<const LanePath*>(range.front.states().data() + range.begin);
   query.chosen = chosen_.data();
   query.chosen_count = chosen_.size();
   next.resize(before + chosen_.size(), transport.emitters_by_tree);
-  query.next_rays = reinterpret_cast<LaneRay*>(next.rays.data() + before);
-  query.next_paths = reinterpret_cast<LanePath*>(next.states.data() + before);
+  query.next_rays = reinterpret_cast<LaneRay*>(next.rays().data() + before);
+  query.next_paths = reinterpret_cast<LanePath*>(next.states().data() + before);
   query.next_origins =
       transport.emitters_by_tree ? reinterpret_cast<LaneReceiver*>(next.origins.data() + before) : nullptr;
   const ShadowQueue::Room room = sinks.shadows.open(chosen_.size() * (lights_.size() + 1));

@@ -54,7 +54,6 @@ class MatteGroup {
   std::vector<float> diffuse_, emission_;
   std::vector<double> pdf_area_;
   std::vector<LanePointLight> lights_;
-  std::array<std::uint32_t, 32> sobol_third_{};
   std::vector<std::uint32_t> chosen_;
 };
 

@@ -153,16 +153,37 @@ class MatteBatch {
     return static_cast<std::uint32_t>(low);
   }
 
+  /// The same for each lane. Sums rise, so where there are few of them those at or below u times the total are counted.
+  void draw_by_power(F64 u, std::uint32_t (&drawn)[kLanes]) const {
+    constexpr std::size_t kFew = 16;
+    alignas(64) std::int64_t below[kLanes];
+    I64 counted{};
+    const bool few = query_.emitter_count <= kFew;
+    if (few) {
+      const F64 wanted = u * query_.cumulative[query_.emitter_count - 1];
+      for (std::size_t k = 0; k < query_.emitter_count; ++k) counted -= ~(wanted < query_.cumulative[k]);
+    }
+    store(below, counted);
+    for (int i = 0; i < kLanes; ++i) {
+      const auto place = static_cast<std::size_t>(below[i]);
+      drawn[i] = few && place < query_.emitter_count ? static_cast<std::uint32_t>(place) : draw_by_power(u[i]);
+    }
+  }
+
   /// Triangles drawn for each lane, with the density of each per area; 0 where nothing can be drawn.
   F64 draw(const LaneVertex& vertex, F64 u, std::uint32_t (&triangles)[kLanes]) const {
     alignas(64) double pdf_area[kLanes];
+    if (query_.tree == nullptr) {
+      std::uint32_t drawn[kLanes];
+      draw_by_power(u, drawn);
+      for (int i = 0; i < kLanes; ++i) {
+        triangles[i] = query_.emitters[drawn[i]];
+        pdf_area[i] = query_.pdf_area[query_.material_ids[triangles[i]]];
+      }
+      return load<F64>(pdf_area);
+    }
     const V3f p = narrow(vertex.point.p);
     for (int i = 0; i < kLanes; ++i) {
-      if (query_.tree == nullptr) {
-        triangles[i] = query_.emitters[draw_by_power(u[i])];
-        pdf_area[i] = query_.pdf_area[query_.material_ids[triangles[i]]];
-        continue;
-      }
       LaneDraw drawn{0, 0.0};
       if (i < count_) {
         const LaneReceiver receiver{{p.x[i], p.y[i], p.z[i]},

@@ -6,29 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace raykiln::render {
+#include "lane_path.hpp"
 
-/// Ray, as it lies in memory.
-struct LaneRay {
-  float o[3], t_min, d[3], t_max;
-};
+namespace raykiln::render {
 
 /// Hit, as it lies in memory.
 struct LaneHit {
   float t;
   std::uint32_t id;
   float u, v;
-};
-
-/// PathState, as it lies in memory.
-struct LanePath {
-  std::uint64_t key_a, key_b, point;
-  double throughput[3];
-  double scale, pdf;
-  std::uint64_t node;
-  std::uint32_t slot;
-  std::uint16_t bounce;
-  bool met_diffuse;
 };
 
 /// EmitterReceiver, as it lies in memory.
@@ -66,7 +52,7 @@ struct MatteQuery {
   bool emitter_sampling, roulette, sobol;
   std::uint32_t bounces_before_roulette;
   double roulette_factor;
-  const std::uint32_t* sobol_third;  ///< a column for each digit of an index
+  const std::uint32_t* sobol_third;  ///< sobol::kThird, 16 words for each four digits of an index
 
   const std::uint32_t* emitters;  ///< triangles
   const double* cumulative;       ///< of their weights

@@ -1,7 +1,9 @@
 // Paths that are under way: rays apart from the rest, as the tree wants them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raykiln/math/ray.hpp"
@@ -24,35 +26,53 @@ struct PathState {
   bool met_diffuse = false;  ///< one of them was diffuse; kept where caustics are left out alone
 };
 
-struct PathStream {
-  std::vector<Ray> rays;
-  std::vector<PathState> states;
+class PathStream {
+ public:
   /// Where each path comes from, as its emitter was drawn for there; empty where emitters are not
   /// drawn from a tree.
   std::vector<EmitterReceiver> origins;
   std::vector<PathCone> cones;  ///< of each path's ray; empty where textures are read exactly
 
-  [[nodiscard]] std::size_t size() const { return rays.size(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::span<const Ray> rays() const { return {rays_.data(), size_}; }
+  [[nodiscard]] std::span<Ray> rays() { return {rays_.data(), size_}; }
+  [[nodiscard]] std::span<const PathState> states() const { return {states_.data(), size_}; }
+  [[nodiscard]] std::span<PathState> states() { return {states_.data(), size_}; }
+
   void push(const Ray& ray, const PathState& state) {
-    rays.push_back(ray);
-    states.push_back(state);
+    make_room(size_ + 1);
+    rays_[size_] = ray;
+    states_[size_] = state;
+    ++size_;
   }
   void push(const Ray& ray, const PathState& state, const EmitterReceiver& origin) {
     push(ray, state);
     origins.push_back(origin);
   }
-  /// With `from_places` the places where paths come from follow.
+  /// New rays and states hold anything: they are to be written. With `from_places` the places where paths come from
+  /// follow.
   void resize(std::size_t size, bool from_places) {
-    rays.resize(size);
-    states.resize(size);
+    make_room(size);
+    size_ = size;
     if (from_places) origins.resize(size);
   }
   void clear() {
-    rays.clear();
-    states.clear();
+    size_ = 0;
     origins.clear();
     cones.clear();
   }
+
+ private:
+  void make_room(std::size_t size) {
+    if (size <= rays_.size()) return;
+    rays_.resize(std::max(size, 2 * rays_.size()));
+    states_.resize(rays_.size());
+  }
+
+  /// Longer than size_ once they have been: room is made, and its elements constructed, once.
+  std::vector<Ray> rays_;
+  std::vector<PathState> states_;
+  std::size_t size_ = 0;
 };
 
 }  // namespace raykiln::render

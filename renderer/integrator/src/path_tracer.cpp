@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "camera_group.hpp"
 #include "first_surface.hpp"
 #include "matte_group.hpp"
 #include "gap_walk.hpp"
@@ -69,6 +70,7 @@ struct PathTracer::Scratch {
   std::vector<Hit> hits;
   ShadowQueue shadows;
   MatteGroup mattes;
+  CameraGroup cameras;
   Material painted{};  ///< for layers
   GapWalk gaps{};
 };
@@ -88,7 +90,7 @@ PathTracer::PathTracer(const TransportScene& scene, const CameraRays& camera,
     : camera_(camera) {
   const Transport transport = make_transport(scene, settings);
   scratch_.reset(new Scratch{transport, render::shading_loop(switches_for(transport)), {}, {}, {}, {},
-                             MatteGroup(transport), {}});
+                             MatteGroup(transport), CameraGroup(camera, settings), {}});
 }
 
 PathTracer::~PathTracer() = default;
@@ -102,31 +104,44 @@ void PathTracer::admit(Call& call) {
   const double widest = widest_level(settings.branches, settings.max_depth);
   const auto room = static_cast<std::size_t>(std::clamp(
       static_cast<double>(kMostBranchRays) / widest, 1.0, static_cast<double>(kStreamPaths)));
-  for (; call.started < call.starts.size() && front.size() < room; ++call.started) {
-    const PathStart& start = call.starts[call.started];
-    const int x = start.x + settings.window_x, y = start.y + settings.window_y;
+  if (front.size() >= room) return;
+  const std::size_t count = std::min(room - front.size(), call.starts.size() - call.started);
+  const std::span<const PathStart> starts = call.starts.subspan(call.started, count);
+  const auto first_slot = static_cast<std::uint32_t>(call.started);
+  if (scratch_->cameras.ready()) {
+    scratch_->cameras.shoot(starts, first_slot, front);
+  } else {
+    shoot(starts, first_slot, front);
+  }
+  call.started += count;
+  if (scratch_->transport.emitters_by_tree) front.origins.resize(front.size());
+  if (scratch_->transport.pyramids == nullptr) return;
+  while (front.cones.size() < front.size()) front.cones.push_back(camera_.cone(front.rays()[front.cones.size()]));
+}
+
+void PathTracer::shoot(std::span<const PathStart> starts, std::uint32_t first_slot, PathStream& into) const {
+  const PathSettings& settings = scratch_->transport.settings;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const int x = starts[i].x + settings.window_x, y = starts[i].y + settings.window_y;
     const std::uint64_t pixel = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint32_t>(x);
     PathState state;
-    state.key = path_key(settings.sampler, settings.seed, pixel, start.sample);
-    state.slot = static_cast<std::uint32_t>(call.started);
-    front.push(camera_.ray(x, y, settings.pixel_mode, vertex_key(state.key, 0, 0), settings.pixel_filter),
-               state);
-    if (scratch_->transport.pyramids != nullptr) front.cones.push_back(camera_.cone(front.rays.back()));
-    if (scratch_->transport.emitters_by_tree) front.origins.emplace_back();
+    state.key = path_key(settings.sampler, settings.seed, pixel, starts[i].sample);
+    state.slot = first_slot + static_cast<std::uint32_t>(i);
+    into.push(camera_.ray(x, y, settings.pixel_mode, vertex_key(state.key, 0, 0), settings.pixel_filter), state);
   }
 }
 
 void PathTracer::advance(Call& call, std::size_t begin, std::size_t end) {
   Scratch& scratch = *scratch_;
   PathStream& front = scratch.front;
-  const std::span<const Ray> rays(front.rays.data() + begin, end - begin);
+  const std::span<const Ray> rays = front.rays().subspan(begin, end - begin);
   scratch.hits.resize(rays.size());
   const Clock::time_point start = Clock::now();
   closest_hits(scratch.transport.tree, rays, scratch.hits, {}, scratch.transport.settings.traversal,
                &call.stats.traversal);
   if (scratch.transport.gaps.any()) {
     scratch.gaps.paths(scratch.transport, rays,
-                       std::span(scratch.front.states).subspan(begin, end - begin), scratch.hits,
+                       scratch.front.states().subspan(begin, end - begin), scratch.hits,
                        call.results, call.stats);
   }
   call.stats.traversal_seconds += seconds_since(start);
@@ -135,16 +150,16 @@ void PathTracer::advance(Call& call, std::size_t begin, std::size_t end) {
   if (!call.layers.empty()) look(call, begin, end);
   shade(call, begin, end);
   if (call.layers.empty()) return;
-  mark_light(scratch.transport, std::span(front.states).subspan(begin, end - begin), call.results, call.layers);
+  mark_light(scratch.transport, front.states().subspan(begin, end - begin), call.results, call.layers);
 }
 
 void PathTracer::look(Call& call, std::size_t begin, std::size_t end) {
   Scratch& scratch = *scratch_;
   for (std::size_t i = begin; i < end; ++i) {
-    const PathState& state = scratch.front.states[i];
+    const PathState& state = scratch.front.states()[i];
     if (state.bounce > 0) continue;
     call.layers[state.slot] =
-        first_surface(scratch.transport, camera_, scratch.front.rays[i], scratch.hits[i - begin], scratch.painted);
+        first_surface(scratch.transport, camera_, scratch.front.rays()[i], scratch.hits[i - begin], scratch.painted);
   }
 }
 
@@ -156,10 +171,10 @@ void PathTracer::dark(Call& call) {
   const bool surfaces = !bounds(scratch.transport.tree).empty();
   for (admit(call); surfaces && scratch.front.size() > 0 && !call.stop.stop_requested(); admit(call)) {
     scratch.hits.resize(scratch.front.size());
-    closest_hits(scratch.transport.tree, scratch.front.rays, scratch.hits, {}, scratch.transport.settings.traversal,
+    closest_hits(scratch.transport.tree, scratch.front.rays(), scratch.hits, {}, scratch.transport.settings.traversal,
                  &call.stats.traversal);
     if (scratch.transport.gaps.any()) {
-      scratch.gaps.paths(scratch.transport, scratch.front.rays, scratch.front.states, scratch.hits, call.results,
+      scratch.gaps.paths(scratch.transport, scratch.front.rays(), scratch.front.states(), scratch.hits, call.results,
                          call.stats);
     }
     call.stats.camera_rays += scratch.front.size();

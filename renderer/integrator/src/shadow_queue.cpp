@@ -1,5 +1,6 @@
 #include "shadow_queue.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace raykiln::render {
@@ -29,33 +30,36 @@ void ShadowQueue::push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const 
     ray.d = to - from;
     ray.t_max = end == ShadowEnd::kSurface ? kBeforeSurface : kBeforePointLight;
   }
-  rays_.push_back(ray);
-  waiting_.push_back({light, slot});
+  make_room(size_ + 1);
+  rays_[size_] = ray;
+  waiting_[size_] = {light, slot};
+  ++size_;
+}
+
+void ShadowQueue::make_room(std::size_t size) {
+  if (size <= rays_.size()) return;
+  rays_.resize(std::max(size, 2 * rays_.size()));
+  waiting_.resize(rays_.size());
 }
 
 ShadowQueue::Room ShadowQueue::open(std::size_t most) {
-  const std::size_t first = rays_.size();
-  rays_.resize(first + most);
-  waiting_.resize(first + most);
-  return {first, rays_.data() + first, waiting_.data() + first};
+  make_room(size_ + most);
+  return {size_, rays_.data() + size_, waiting_.data() + size_};
 }
 
-void ShadowQueue::close(const Room& room, std::size_t count) {
-  rays_.resize(room.first + count);
-  waiting_.resize(room.first + count);
-}
+void ShadowQueue::close(const Room& room, std::size_t count) { size_ = room.first + count; }
 
 void ShadowQueue::flush(const KdTree& tree, Traversal traversal, std::span<PathResult> results,
                         RenderStats& stats, const Gaps& gaps) {
-  if (rays_.empty()) return;
+  if (size_ == 0) return;
   if (gaps.any()) return flush_through_gaps(tree, traversal, gaps, results, stats);
-  blocked_.resize(rays_.size());
+  blocked_.resize(size_);
   const auto start = std::chrono::steady_clock::now();
-  any_hits(tree, rays_, blocked_, traversal, &stats.traversal);
+  any_hits(tree, rays(), blocked_, traversal, &stats.traversal);
   stats.traversal_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  stats.shadow_rays += rays_.size();
-  for (std::size_t i = 0; i < rays_.size(); ++i) {
+  stats.shadow_rays += size_;
+  for (std::size_t i = 0; i < size_; ++i) {
     if (blocked_[i] == Occlusion::kNone) results[waiting_[i].slot].direct += waiting_[i].light;
   }
   clear();
@@ -64,12 +68,12 @@ void ShadowQueue::flush(const KdTree& tree, Traversal traversal, std::span<PathR
 // What of the light each surface lets through is multiplied, nothing is drawn: a draw would add noise.
 void ShadowQueue::flush_through_gaps(const KdTree& tree, Traversal traversal, const Gaps& gaps,
                                      std::span<PathResult> results, RenderStats& stats) {
-  hits_.resize(rays_.size());
-  share_.assign(rays_.size(), 1.0);
+  hits_.resize(size_);
+  share_.assign(size_, 1.0);
   const auto start = std::chrono::steady_clock::now();
-  closest_hits(tree, rays_, hits_, {}, traversal, &stats.traversal);
+  closest_hits(tree, rays(), hits_, {}, traversal, &stats.traversal);
   gap_walk_.go_on(
-      tree, traversal, rays_, hits_, stats,
+      tree, traversal, rays(), hits_, stats,
       [&](std::size_t i, const Hit& hit) {
         share_[i] *= 1.0 - gaps.met(place_of(hit), Vec3d(rays_[i].d));
         return !(share_[i] > 0.0);
@@ -80,16 +84,13 @@ void ShadowQueue::flush_through_gaps(const KdTree& tree, Traversal traversal, co
       });
   stats.traversal_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  stats.shadow_rays += rays_.size();
-  for (std::size_t i = 0; i < rays_.size(); ++i) {
+  stats.shadow_rays += size_;
+  for (std::size_t i = 0; i < size_; ++i) {
     if (share_[i] > 0.0) results[waiting_[i].slot].direct += waiting_[i].light * share_[i];
   }
   clear();
 }
 
-void ShadowQueue::clear() {
-  rays_.clear();
-  waiting_.clear();
-}
+void ShadowQueue::clear() { size_ = 0; }
 
 }  // namespace raykiln::render

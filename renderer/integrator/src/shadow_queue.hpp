@@ -23,7 +23,7 @@ class ShadowQueue {
   /// So many rays make a good call and bound the memory, however many lights a scene has.
   static constexpr std::size_t kCapacity = 8192;
 
-  [[nodiscard]] bool full() const { return rays_.size() >= kCapacity; }
+  [[nodiscard]] bool full() const { return size_ >= kCapacity; }
 
   /// A ray from `from`, which is clear of its surface, to `to`; with kInfinity along `to`.
   void push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const Rgbd& light,
@@ -51,11 +51,15 @@ class ShadowQueue {
   void clear();
 
  private:
-  std::vector<Ray> rays_;
-  std::vector<Waiting> waiting_;
+  void make_room(std::size_t size);
+  [[nodiscard]] std::span<const Ray> rays() const { return {rays_.data(), size_}; }
   void flush_through_gaps(const KdTree& tree, Traversal traversal, const Gaps& gaps,
                           std::span<PathResult> results, RenderStats& stats);
 
+  /// Longer than size_ once they have been: room is made, and its elements constructed, once.
+  std::vector<Ray> rays_;
+  std::vector<Waiting> waiting_;
+  std::size_t size_ = 0;
   std::vector<Occlusion> blocked_;
   std::vector<Hit> hits_;      ///< where surfaces may have gaps
   std::vector<double> share_;  ///< of the light that gets through them

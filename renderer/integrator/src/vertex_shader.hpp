@@ -263,8 +263,22 @@ class VertexShader {
     for (const DirectionalLight& light : scene_.directional_lights) light_along(vertex, light);
   }
 
+  /// Can a mirror or a clear border send on light of an emitter's point at all? Nearly always not, and then neither
+  /// is a point drawn: value.f_cos would be 0.
+  bool light_may_come(const Vertex& vertex) const {
+    if constexpr (kSwitches.rich || !kSwitches.specular) {
+      return true;
+    } else {
+      const Lobes& b = vertex.bsdf;
+      if (!scatters_along_axes_alone(b)) return true;
+      const auto along = [&](const Vec3f& axis) { return scene_.emitters.may_lie_along(vertex.point.p, axis, kAxisWidth); };
+      return along(b.mirror) || (vertex.transmits && along(b.refracted));
+    }
+  }
+
   /// One point on an emitting triangle, weighted against the path's own rays finding it.
   void light_from_emitters(const Vertex& vertex) {
+    if (!light_may_come(vertex)) return;
     const EmitterSample sample =
         scene_.emitters_by_tree
             ? scene_.emitters.sample(scene_.scene, vertex.key, receiver(vertex))
@@ -397,16 +411,17 @@ class VertexShader {
 template <Switches kSwitches>
 void shade_range(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks) {
   const PathStream& front = range.front;
+  const std::span<const PathState> states = front.states();
   for (std::size_t i = range.begin; i < range.end && !sinks.stopped; ++i) {
-    (front.states[i].bounce == 0 ? sinks.stats.camera_rays : sinks.stats.bounce_rays) += 1;
+    (states[i].bounce == 0 ? sinks.stats.camera_rays : sinks.stats.bounce_rays) += 1;
     const Hit& hit = range.hits[i - range.begin];
-    if (kSwitches.bounces && !kSwitches.reduced && range.mattes.takes(hit, front.states[i])) {
+    if (kSwitches.bounces && !kSwitches.reduced && range.mattes.takes(hit, states[i])) {
       range.mattes.add(i, transport, range, sinks);
       continue;
     }
     const EmitterReceiver* origin = transport.emitters_by_tree ? &front.origins[i] : nullptr;
     const PathCone* cone = kSwitches.rich && transport.pyramids != nullptr ? &front.cones[i] : nullptr;
-    VertexShader<kSwitches>(transport, front.states[i], origin, sinks, cone).shade(front.rays[i], hit);
+    VertexShader<kSwitches>(transport, states[i], origin, sinks, cone).shade(front.rays()[i], hit);
   }
   range.mattes.shade(transport, range, sinks);
 }

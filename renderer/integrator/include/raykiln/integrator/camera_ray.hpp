@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "raykiln/math/ray.hpp"
 #include "raykiln/sampling/random.hpp"
@@ -54,6 +55,12 @@ class CameraRays {
   /// single point t = 0 outside of it, which meets nothing.
   [[nodiscard]] Ray ray(int x, int y, PixelMode mode, const VertexKey& vertex,
                         PixelFilter filter = PixelFilter::kBox) const;
+
+  /// What ray() reads of a camera in perspective without a lens; nothing for others.
+  struct Pinhole {
+    Vec3d eye, corner, step_x, step_y, lo, hi;
+  };
+  [[nodiscard]] std::optional<Pinhole> pinhole() const;
 
  private:
   struct Sight {

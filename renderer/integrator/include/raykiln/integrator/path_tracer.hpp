@@ -63,6 +63,8 @@ struct PathResult {
 /// infinity rather than overflow.
 [[nodiscard]] double rays_of_one_path(int branches, int max_depth);
 
+class PathStream;
+
 /// Owns the scratch memory of one thread; reuse it for all calls of a task. A result depends on
 /// its PathStart alone, not on the others in the call.
 class PathTracer {
@@ -86,6 +88,8 @@ class PathTracer {
   struct Scratch;
   struct Call;
   void admit(Call& call);  ///< shoots camera rays while there is room under way
+  /// The same one by one, without what goes beside rays and states.
+  void shoot(std::span<const PathStart> starts, std::uint32_t first_slot, PathStream& into) const;
   void advance(Call& call, std::size_t begin, std::size_t end);  ///< one reflection of these paths
   void shade(Call& call, std::size_t begin, std::size_t end);
   void look(Call& call, std::size_t begin, std::size_t end);  ///< what these camera rays met
