@@ -8,7 +8,9 @@ samples in t seconds with error e, e t / target seconds give the target. Error o
 1/n, so a first pair of renders tells each method's own n: the power of 2 nearest to where the target is, at most --most.
 
 Methods take turns, so that a loud machine is loud for all. Seconds are of processor time, of all threads, of
-rendering alone: for raykiln what n samples take beyond one sample; for Mitsuba of a warm call, compiled before.
+rendering alone: for raykiln what n samples take beyond one sample, by a render of --timed samples if n is less (what
+the build of a large tree takes differs from call to call by as much as 16 samples take); for Mitsuba of a warm call,
+compiled before.
 """
 
 import argparse
@@ -48,11 +50,11 @@ def own() -> float:
 
 
 class Raykiln:
-    def __init__(self, program, folder, side, threads, sampler):
+    def __init__(self, program, folder, side, threads, sampler, timed):
         self.name, self.folder, self.target = f"raykiln {sampler}", folder, WORK / f"{sampler}.exr"
         self.command = [program, "-q", "render", str(folder), "-o", str(self.target), "--size",
                         f"{side}x{side}", "--threads", str(threads), "--sampler", sampler]
-        self.start = None
+        self.start, self.timed = None, timed
 
     def call(self, samples, seed):
         before = children()
@@ -67,7 +69,10 @@ class Raykiln:
 
     def render(self, samples, seed):
         picture, cpu, wall = self.call(samples, seed)
-        return picture, (cpu - self.start) * samples / (samples - 1), wall
+        timed = max(samples, self.timed)
+        if timed > samples:
+            cpu = self.call(timed, seed)[1]
+        return picture, (cpu - self.start) * samples / (timed - 1), wall
 
 
 class Mitsuba:
@@ -97,7 +102,8 @@ def measure(name, options) -> dict:
     folder.mkdir(parents=True, exist_ok=True)
     write(folder)
     program = str(Path(options.bin) / "raykiln")
-    methods = [Raykiln(program, folder, options.side, options.threads, s) for s in ("random", "sobol")]
+    methods = [Raykiln(program, folder, options.side, options.threads, s, options.timed)
+               for s in ("random", "sobol")]
     methods += [Mitsuba(folder, options.side, s) for s in ("independent", "multijitter")]
     counts = {}
     for method in methods:
@@ -144,7 +150,7 @@ def efficiency(options) -> list:
     for name, folder in folders.items():
         found = {}
         for threads in (1, 2, 1, 2):
-            render = Raykiln(str(Path(options.bin) / "raykiln"), folder, options.side, threads, "random")
+            render = Raykiln(str(Path(options.bin) / "raykiln"), folder, options.side, threads, "random", 32)
             render.warm(1)
             _, cpu, wall = render.render(32, 5)
             scale = 1e6 / (32 * options.side**2)
@@ -163,6 +169,7 @@ def main():
     parser.add_argument("--side", type=int, default=128, help="of the picture, pixels")
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--most", type=int, default=256, help="samples a pixel of one render")
+    parser.add_argument("--timed", type=int, default=256, help="samples of a render that is timed, at least")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--no-efficiency", action="store_true", help="leave the second table out")
     parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
