@@ -25,7 +25,7 @@ BuildParams sane(BuildParams p) {
 }  // namespace
 
 BuildContext::BuildContext(const TriangleView& m, const BuildParams& p, TaskRunner& r)
-    : mesh(m), params(sane(p)), runner(r), concurrent(r.concurrency() > 1) {}
+    : kernels(build_kernels()), mesh(m), params(sane(p)), runner(r), concurrent(r.concurrency() > 1) {}
 
 bool BuildContext::stopped() {
   if (stopped_.load(std::memory_order_relaxed)) return true;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "build_kernels.hpp"
 #include "raykiln/accel/kdtree.hpp"
 
 namespace raykiln::render {
@@ -40,6 +41,12 @@ class BuildContext {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
   }
 
+  /// Says that the corners will be asked for soon.
+  void prefetch(std::uint32_t triangle) const {
+    __builtin_prefetch(&mesh.positions[mesh.triangles[triangle][0]]);
+  }
+
+  const BuildKernels& kernels;
   const TriangleView& mesh;
   const BuildParams params;  ///< made sane by the constructor
   TaskRunner& runner;

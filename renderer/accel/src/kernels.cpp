@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "build_kernels.hpp"
+
 namespace raykiln::render {
 namespace {
 
@@ -78,6 +80,18 @@ Traversal resolve(Traversal wanted) {
     return with_test(chosen, test);
   }
   return is_available(wanted) ? wanted : with_test(Traversal::kScalar, test);
+}
+
+const BuildKernels* avx2_build_kernels() {
+#ifdef RAYKILN_X86_KERNELS
+  if (has_avx2()) return &kAvx2BuildKernels;
+#endif
+  return nullptr;
+}
+
+const BuildKernels& build_kernels() {
+  const BuildKernels* const avx2 = avx2_build_kernels();
+  return avx2 != nullptr && resolve(Traversal::kTree) != Traversal::kScalar ? *avx2 : kAnyBuildKernels;
 }
 
 std::string_view name(Traversal traversal) {

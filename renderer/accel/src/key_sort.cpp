@@ -7,6 +7,7 @@ namespace raykiln::render {
 namespace {
 
 constexpr unsigned kMaxDigitBits = 12;
+constexpr std::size_t kInsertionMax = 16;
 using Histogram = std::array<std::uint32_t, 1U << kMaxDigitBits>;
 
 struct Digit {
@@ -32,7 +33,21 @@ bool bucket_starts(std::span<const std::uint64_t> keys, Digit digit, Histogram& 
   return true;
 }
 
+// Most calls are for a handful of keys.
+std::uint64_t insertion_sort(std::span<std::uint64_t> keys) {
+  std::uint64_t comparisons = 0;
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const std::uint64_t key = keys[i];
+    std::size_t to = i;
+    for (; to > 0 && keys[to - 1] > key; --to) keys[to] = keys[to - 1];
+    keys[to] = key;
+    comparisons += i - to + 1;
+  }
+  return comparisons;
+}
+
 std::uint64_t comparison_sort(std::span<std::uint64_t> keys) {
+  if (keys.size() <= kInsertionMax) return insertion_sort(keys);
   std::uint64_t comparisons = 0;
   std::sort(keys.begin(), keys.end(), [&comparisons](std::uint64_t a, std::uint64_t b) {
     ++comparisons;

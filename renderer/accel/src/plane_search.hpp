@@ -38,26 +38,16 @@ class PlaneSearch {
   };
   using Cursors = std::vector<std::size_t>;
   using Segments = std::vector<Segment>;
-  /// Of each bin: extents that begin and that end before it, and no plane in it costs less than
-  /// `least` before the empty factor.
-  struct BinBounds {
-    std::array<std::uint32_t, kMaxBins + 2> n_left, n_gone;
-    std::array<double, kMaxBins + 1> least;
-  };
 
   // Small pieces of work are not worth a look: the caller looks between cells.
   bool looks_for_stop(std::size_t work) { return work >= kStopInterval && context_.stopped(); }
   void count_bins(Runs runs, const BinGrid& grid, bool parallel);
-  void choose_segments(const BinGrid& grid, const SweepInput& input, double leaf_cost,
-                       const Choosers& choosers);
+  void choose_segments(const BinGrid& grid, const SweepInput& input, double leaf_cost);
   void look_into_segments(Runs runs, const BinGrid& grid, const SweepInput& input, double leaf_cost,
                           bool parallel, Choosers& choosers, BuildStats& counts);
   // Gathers, sorts and sweeps `chosen`; gives the least cost known.
   double look_into(Segments& chosen, Runs runs, const BinGrid& grid, const SweepInput& input,
                    double least, bool parallel, Choosers& choosers, BuildStats& counts);
-  // Fills bounds_[axis]; gives a cost that the axis' cheapest plane does not exceed.
-  double bound_axis(std::size_t axis, const BinGrid& grid, const SweepInput& input,
-                    const CellCost& cost);
   void place(Segments& chosen, std::size_t bins, std::size_t runs);
   void gather(Segments& chosen, Runs runs, const BinGrid& grid, bool parallel);
   void gather_run(std::span<const Reference> run, const BinCode* codes, const BinGrid& grid,
@@ -72,15 +62,16 @@ class PlaneSearch {
   Segments first_;                   ///< the most promising of them
   std::array<std::array<std::uint32_t, kMaxBins + 2>, 3> segment_of_;
   WantedBins wanted_;
+  Cursors cursors_;                  ///< where the next key of each chosen bin goes
   std::size_t waste_ = 0;            ///< where keys that nobody asked for go, one place a run
   std::vector<EventKey> keys_;
   std::vector<std::uint64_t> sort_scratch_;
 };
 
-/// Counts the triangles on both sides of every plane. For few references.
-inline constexpr std::size_t kCountingMax = 24;
-void consider_by_counting(std::span<const Reference> references, const SweepInput& input,
-                          double leaf_cost, const BuildParams& params,
-                          std::span<PlaneChooser, 3> choosers, BuildStats& counts);
+/// The same for up to kCountingMax references: counts the triangles on both sides of every plane.
+[[nodiscard]] SweepResult search_by_counting(const BuildContext& context,
+                                             std::span<const Reference> references,
+                                             const SweepInput& input, double leaf_cost,
+                                             BuildStats& counts);
 
 }  // namespace raykiln::render

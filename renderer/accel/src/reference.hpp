@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "raykiln/math/ray.hpp"
 
@@ -20,7 +19,9 @@ struct alignas(16) Reference {
 };
 static_assert(sizeof(Reference) == 32);
 
-using References = std::vector<Reference>;
+/// As the kernels read them (build_kernels.hpp).
+[[nodiscard]] inline const float* words_of(const Reference* r) { return r->lo.data(); }
+[[nodiscard]] inline float* words_of(Reference* r) { return r->lo.data(); }
 
 /// A cell's references, in order, in one or more runs.
 using Runs = std::span<const std::span<const Reference>>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "build_context.hpp"
+#include "polygon_clip.hpp"
 #include "reference.hpp"
 #include "sah_sweep.hpp"
 
@@ -30,19 +31,12 @@ class ReferenceSplit {
  private:
   // Wald & Havran 2006, algorithm 6: a triangle in the plane goes to the side that was chosen for
   // all such, one that only touches it stays where it is.
-  [[nodiscard]] bool goes_left(const Reference& r) const {
-    return r.lo[axis_] < position_ || (planar_left_ && r.hi[axis_] <= position_);
-  }
-  [[nodiscard]] bool goes_right(const Reference& r) const {
-    return r.hi[axis_] > position_ || (!planar_left_ && r.lo[axis_] >= position_);
-  }
-  [[nodiscard]] bool clip(const Reference& r, const Bounds3f& cell, Reference& to) const;
+  void clip(SplitCounts& block, Reference* left, Reference* right) const;
 
   const BuildContext& context_;
   Bounds3f left_, right_;
-  std::size_t axis_;
-  float position_;
-  bool planar_left_;
+  PartsClip parts_;
+  SplitQuery query_;
 };
 
 }  // namespace raykiln::render

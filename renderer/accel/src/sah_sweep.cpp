@@ -42,6 +42,22 @@ CellCost::CellCost(const Bounds3f& cell, int axis, const BuildParams& params)
       k_i_over_area_(params.k_i / surface_area(cell)),
       empty_factor_(params.empty_factor) {}
 
+std::array<RoughCost, 3> rough_costs(const Bounds3f& cell, const BuildParams& params) {
+  const std::array<double, 3> width{extent(cell, 0), extent(cell, 1), extent(cell, 2)};
+  // Areas of the faces across each axis.
+  const std::array<double, 3> face{width[1] * width[2], width[2] * width[0], width[0] * width[1]};
+  const double half_area = face[0] + face[1] + face[2];
+  const double per_area = params.k_i / half_area;
+  const bool usable = half_area > 0.0 && params.k_i > 1e-30 && params.k_i < 1e30 && params.k_t < 1e30;
+  std::array<RoughCost, 3> costs;
+  for (std::size_t a = 0; a < 3; ++a) {
+    costs[a] = {static_cast<float>(params.k_t), static_cast<float>(face[a] * per_area),
+                static_cast<float>((face[(a + 1) % 3] + face[(a + 2) % 3]) * per_area),
+                static_cast<float>(params.empty_factor), usable};
+  }
+  return costs;
+}
+
 void sweep(std::span<const EventKey> events, const SweepInput& input, int axis,
            std::uint32_t n_left, std::uint32_t n_gone, PlaneChooser& chooser) {
   const float lo = input.cell.lo[axis];

@@ -1,6 +1,7 @@
 // The surface area heuristic and the sweep that finds its best plane on one axis.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -39,18 +40,13 @@ class CellCost {
     return k_t_ + k_i_over_area_ * (area_left * n_left + area_right * n_right);
   }
 
-  /// The cost before the factor is k_t + (cap + girth x) N_l + (cap + girth (width - x)) N_r at a
-  /// distance x from the cell's lower face.
-  struct Line {
-    double k_t, cap, girth, width;
-  };
-  [[nodiscard]] Line line() const {
-    return {k_t_, cap_area_ * k_i_over_area_, half_girth_ * k_i_over_area_, hi_ - lo_};
-  }
 
  private:
   double lo_, hi_, cap_area_, half_girth_, k_t_, k_i_over_area_, empty_factor_;
 };
+
+/// The same for the kernels, of all three axes.
+[[nodiscard]] std::array<RoughCost, 3> rough_costs(const Bounds3f& cell, const BuildParams& params);
 
 /// Surface area of a box, in double.
 [[nodiscard]] double surface_area(const Bounds3f& box);
@@ -64,6 +60,15 @@ struct SweepInput {
 struct SweepResult {
   SplitPlane best;             ///< cheapest plane within the budget; the first of equals
   double unaffordable = std::numeric_limits<double>::infinity();  ///< cheapest one beyond it
+};
+
+/// The best of the axes, which come in their order: the first of equals.
+struct BestOfAxes {
+  SweepResult result;
+  void take(const SweepResult& of_axis) {
+    if (of_axis.best.cost < result.best.cost) result.best = of_axis.best;
+    if (of_axis.unaffordable < result.unaffordable) result.unaffordable = of_axis.unaffordable;
+  }
 };
 
 /// Takes planes of one axis in any order and keeps the cheapest; of equals the one at the lowest
@@ -87,7 +92,6 @@ class PlaneChooser {
   }
 
   [[nodiscard]] const SweepResult& result() const { return result_; }
-  [[nodiscard]] const CellCost& cost() const { return cost_; }
 
  private:
   CellCost cost_;

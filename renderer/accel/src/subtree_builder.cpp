@@ -9,7 +9,31 @@
 namespace raykiln::render {
 namespace {
 
-// The references of the cell in work lie on top of a stack, those of the cells that wait below it.
+// References on top of each other; memory that is not cleared before it is written.
+class ReferenceStack {
+ public:
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] Reference* from(std::size_t begin) { return data_.get() + begin; }
+  void set_size(std::size_t size) { size_ = size; }
+
+  /// Room for `n` more on top; may move all.
+  Reference* room(std::size_t n) {
+    if (size_ + n > capacity_) {
+      capacity_ = std::max(size_ + n, capacity_ + capacity_ / 2);
+      auto larger = std::make_unique_for_overwrite<Reference[]>(capacity_);
+      std::copy_n(data_.get(), size_, larger.get());
+      data_ = std::move(larger);
+    }
+    return data_.get() + size_;
+  }
+
+ private:
+  std::unique_ptr<Reference[]> data_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+// The references of the cell in work lie on top of one of two stacks, those of the cells that wait
+// below. A split leaves the left part where it is and puts the right one on the other stack.
 class SubtreeBuilder {
  public:
   SubtreeBuilder(BuildContext& context, SubtreeInput input, int max_depth)
@@ -18,12 +42,13 @@ class SubtreeBuilder {
         search_(context),
         max_depth_(max_depth),
         result_(std::make_unique<Subtree>()) {
-    stack_.reserve(input.size() + input.size() / 4);
+    Reference* to = stacks_[0].room(input.size() + input.size() / 4);
+    stacks_[0].set_size(input.size());
     for (Run& run : input.runs) {
-      stack_.insert(stack_.end(), run.data.get(), run.data.get() + run.size);
+      to = std::copy_n(run.data.get(), run.size, to);
       run = {};
     }
-    root_ = {input.cell, 0, input.depth, input.budget, input.share};
+    root_ = {input.cell, 0, 0, input.depth, input.budget, input.share};
     note_live();
   }
 
@@ -35,17 +60,18 @@ class SubtreeBuilder {
  private:
   struct Cell {
     Bounds3f box;
+    std::size_t on = 0;  ///< which stack
     std::size_t begin = 0;
     int depth = 0;
     std::uint64_t budget = 0;
     double share = 0.0;
   };
 
-  // Builds the cell on top of the stack and takes it off.
+  // Builds the cell on top of its stack and takes it off.
   std::uint32_t build_top(const Cell& cell) {
-    const std::size_t n = stack_.size() - cell.begin;
+    const std::size_t n = stacks_[cell.on].size() - cell.begin;
     const SplitPlane plane = stop_.stopped_after(n + 16) ? SplitPlane{} : choose(cell, n);
-    if (plane.axis < 0) return emit_leaf(cell);
+    if (plane.axis < 0) return emit_leaf(cell, n);
 
     auto& nodes = result_->nodes;
     const auto index = static_cast<std::uint32_t>(nodes.size());
@@ -55,9 +81,10 @@ class SubtreeBuilder {
     Cell right = cell;
     left.box.hi[plane.axis] = right.box.lo[plane.axis] = plane.position;
     left.depth = right.depth = cell.depth + 1;
-    right.begin = split_top(cell, plane, n);
-    const Shares shares =
-        share_out(cell.budget, n, right.begin - cell.begin, stack_.size() - right.begin);
+    right.on = 1 - cell.on;
+    right.begin = stacks_[right.on].size();
+    const ReferenceSplit::Sizes sizes = split_top(cell, plane, n);
+    const Shares shares = share_out(cell.budget, n, sizes.left, sizes.right);
     left.budget = shares.left_budget;
     right.budget = shares.right_budget;
     left.share = cell.share * shares.left_share;
@@ -71,37 +98,37 @@ class SubtreeBuilder {
   }
 
   SplitPlane choose(const Cell& cell, std::size_t n) {
-    const std::span<const Reference> all = std::span(stack_).subspan(cell.begin);
+    const std::span<const Reference> all(stacks_[cell.on].from(cell.begin), n);
     return choose_plane(context_, search_, Runs(&all, 1),
                         {cell.box, static_cast<std::uint32_t>(n), cell.budget}, cell.depth,
                         max_depth_, false, result_->counts);
   }
 
-  // Replaces the cell on top by its left and then its right part; gives where the right one begins.
-  std::size_t split_top(const Cell& cell, const SplitPlane& plane, std::size_t n) {
-    if (right_.size() < n) right_.resize(n);
-    Reference* const begin = stack_.data() + cell.begin;
-    const auto sizes = ReferenceSplit(context_, cell.box, plane)
-                           .run({begin, n}, begin, right_.data());
+  ReferenceSplit::Sizes split_top(const Cell& cell, const SplitPlane& plane, std::size_t n) {
+    ReferenceStack& here = stacks_[cell.on];
+    ReferenceStack& other = stacks_[1 - cell.on];
+    Reference* const begin = here.from(cell.begin);
+    const auto sizes =
+        ReferenceSplit(context_, cell.box, plane).run({begin, n}, begin, other.room(n + 1));
+    here.set_size(cell.begin + sizes.left);
+    other.set_size(other.size() + sizes.right);
     result_->counts.clips += sizes.clips;
     result_->counts.events_moved += 6 * (n + sizes.right);
-    stack_.resize(cell.begin + sizes.left);
-    stack_.insert(stack_.end(), right_.data(), right_.data() + sizes.right);
     note_live();
-    return cell.begin + sizes.left;
+    return sizes;
   }
 
-  std::uint32_t emit_leaf(const Cell& cell) {
+  std::uint32_t emit_leaf(const Cell& cell, std::size_t n) {
     auto& references = result_->references;
-    const auto first = static_cast<std::uint32_t>(references.size());
-    for (std::size_t i = cell.begin; i < stack_.size(); ++i) {
-      references.push_back(stack_[i].triangle);
-    }
-    stack_.resize(cell.begin);
-    result_->nodes.push_back({BuildNode::Kind::kLeaf, 0, 0.0F, first,
-                              static_cast<std::uint32_t>(references.size()) - first});
+    const std::size_t first = references.size();
+    references.resize(first + n);
+    const Reference* const from = stacks_[cell.on].from(cell.begin);
+    for (std::size_t i = 0; i < n; ++i) references[first + i] = from[i].triangle;
+    stacks_[cell.on].set_size(cell.begin);
+    result_->nodes.push_back({BuildNode::Kind::kLeaf, 0, 0.0F, static_cast<std::uint32_t>(first),
+                              static_cast<std::uint32_t>(n)});
     unreported_ += cell.share;
-    if (unreported_ > 1e-3 || stack_.empty()) {
+    if (unreported_ > 1e-3 || stacks_[0].size() + stacks_[1].size() == 0) {
       context_.finished(unreported_);
       unreported_ = 0.0;
     }
@@ -110,7 +137,7 @@ class SubtreeBuilder {
 
   void note_live() {
     std::uint64_t& peak = result_->counts.live_bytes_peak;
-    peak = std::max<std::uint64_t>(peak, (stack_.size() + right_.size()) * sizeof(Reference));
+    peak = std::max<std::uint64_t>(peak, (stacks_[0].size() + stacks_[1].size()) * sizeof(Reference));
   }
 
   BuildContext& context_;
@@ -118,8 +145,7 @@ class SubtreeBuilder {
   PlaneSearch search_;
   int max_depth_;
   std::unique_ptr<Subtree> result_;
-  References stack_;
-  References right_;  ///< right part of a cell while the left one is pushed together
+  std::array<ReferenceStack, 2> stacks_;
   double unreported_ = 0.0;
   Cell root_;
 };

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sah_sweep.hpp"
+#include "tree_pages.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -173,9 +174,9 @@ bool lay_out(BuildContext& context, Subtree& root, KdTree& tree) {
   }
   tree.nodes.assign(2 + all.nodes, make_leaf(0, 0));
   if (tree.params.leaf_width == 16) {
-    tree.blocks16.resize(all.blocks);
+    resize_in_large_pages(tree.blocks16, all.blocks);
   } else {
-    tree.blocks8.resize(all.blocks);
+    resize_in_large_pages(tree.blocks8, all.blocks);
   }
 
   const double root_area = surface_area(tree.box);

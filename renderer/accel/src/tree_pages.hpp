@@ -12,6 +12,17 @@ namespace raykiln::render {
 /// and costs no memory.
 void prefer_large_pages(const void* begin, std::size_t bytes);
 
+/// The same before the memory is first written, which saves the move.
+void expect_large_pages(const void* begin, std::size_t bytes);
+
+/// Makes an empty vector as long, in large pages where it can be.
+template <typename T>
+void resize_in_large_pages(std::vector<T>& v, std::size_t n) {
+  v.reserve(n);
+  expect_large_pages(v.data(), n * sizeof(T));
+  v.resize(n);
+}
+
 inline void prefer_large_pages(const KdTree& tree) {
   const auto all_of = [](const auto& v) { prefer_large_pages(v.data(), v.size() * sizeof(v[0])); };
   all_of(tree.nodes);

@@ -35,6 +35,7 @@ struct Options {
   std::uint32_t image = 512;
   std::size_t stream = 4096;
   int repeat = 5;
+  int builds = 5;
   std::uint64_t seed = 1;  ///< of the rays
   [[nodiscard]] bool fast() const { return test == "fast"; }
 };
@@ -71,26 +72,33 @@ class Comparison {
   Comparison(const Options& options, const BenchScene& scene, const TestMesh& mesh,
              const raykiln::bench::EmbreeLibrary& library, Ratios& ratios)
       : options_(options), scene_(scene), mesh_(mesh), ratios_(ratios) {
-    const Stopwatch ours;
-    raykiln::render::SerialTaskRunner runner;
-    tree_ = raykiln::render::build_kdtree(mesh.view(), options.params, runner);
-    const double our_seconds = ours.elapsed().cpu;
-    const Stopwatch high;
-    high_ = library.build(mesh.view(), EmbreeQuality::kHigh, !options.fast());
-    const double high_seconds = high.elapsed().cpu;
+    std::vector<double> ours, high, ratio;
+    for (int turn = 0; turn < options.builds; ++turn) {
+      tree_.reset();
+      const Stopwatch our_watch;
+      raykiln::render::SerialTaskRunner runner;
+      tree_ = raykiln::render::build_kdtree(mesh.view(), options.params, runner);
+      ours.push_back(our_watch.elapsed().cpu);
+      high_.reset();
+      const Stopwatch high_watch;
+      high_ = library.build(mesh.view(), EmbreeQuality::kHigh, !options.fast());
+      high.push_back(high_watch.elapsed().cpu);
+      ratio.push_back(ours.back() / high.back());
+    }
     const Stopwatch medium;
     medium_ = library.build(mesh.view(), EmbreeQuality::kMedium, !options.fast());
     const auto& stats = raykiln::render::build_stats(*tree_);
     std::printf("%-9s %zu triangles; build %.3f s, Embree HIGH %.3f s, MEDIUM %.3f s: %.2f of HIGH; "
                 "%.0f bytes/triangle\n",
-                scene.name, mesh.triangles.size(), our_seconds, high_seconds,
-                medium.elapsed().cpu, our_seconds / high_seconds,
+                scene.name, mesh.triangles.size(), median(ours), median(high), medium.elapsed().cpu,
+                median(ratio),
                 static_cast<double>(stats.bytes) / static_cast<double>(mesh.triangles.size()));
-    ratios_["build"].push_back(our_seconds / high_seconds);
+    std::fflush(stdout);
+    ratios_["build"].push_back(median(ratio));
   }
 
   void run() {
-    if (!high_ || !medium_) return;
+    if (!high_ || !medium_ || options_.repeat == 0) return;
     const raykiln::render::Bounds3f box = raykiln::render::bounds(*tree_);
     auto rays = raykiln::bench::primary_rays(
         box, in_mean() ? options_.image : options_.image / 8, options_.seed);
@@ -270,7 +278,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(8, 8192));
   app.add_option("--stream", options.stream, "rays a call")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
-  app.add_option("--repeat", options.repeat, "turns")->check(CLI::Range(1, 1000));
+  app.add_option("--repeat", options.repeat, "turns of rays; 0: builds only")->check(CLI::Range(0, 1000));
+  app.add_option("--builds", options.builds, "turns of builds")->check(CLI::Range(1, 1000));
   app.add_option("--seed", options.seed, "of the rays");
   app.add_option("--test", options.test,
                  "watertight: ours beside Embree with its robust flag; fast: both without")
