@@ -9,7 +9,7 @@ namespace {
 
 template <int kLeafWidth, bool kAnyHit>
 void walk(const LaneQuery& query, LaneCounts& counts) {
-  using Leaf = LeafVisit<Lanes8, Lanes8, Lanes8, Doubles4, kLeafWidth, kAnyHit>;
+  using Leaf = LeafVisit<Lanes8, Lanes8, Lanes8, Doubles4, Doubles4, kLeafWidth, kAnyHit>;
   LaneWalk<Lanes8, Leaf, kAnyHit, 4> lanes(query, counts);
   lanes.run();
 }

@@ -12,14 +12,14 @@ constexpr std::size_t kGroups = 4;
 
 template <bool kAnyHit>
 void walk8(const LaneQuery& query, LaneCounts& counts) {
-  using Leaf = LeafVisit<Lanes16, Lanes8, Lanes8Twice, Doubles8, 8, kAnyHit>;
+  using Leaf = LeafVisit<Lanes16, Lanes8, Lanes8Twice, Doubles8, Doubles4, 8, kAnyHit>;
   LaneWalk<Lanes16, Leaf, kAnyHit, kGroups> lanes(query, counts);
   lanes.run();
 }
 
 template <bool kAnyHit>
 void walk16(const LaneQuery& query, LaneCounts& counts) {
-  using Leaf = LeafVisit<Lanes16, Lanes16, Lanes16, Doubles8, 16, kAnyHit>;
+  using Leaf = LeafVisit<Lanes16, Lanes16, Lanes16, Doubles8, Doubles4, 16, kAnyHit>;
   LaneWalk<Lanes16, Leaf, kAnyHit, kGroups> lanes(query, counts);
   lanes.run();
 }

@@ -89,7 +89,7 @@ class FastLeafVisit {
   /// The ray `index`, which is in `lane`, at a leaf of `count` blocks from `place` on. True when it
   /// is done.
   template <class Rays>
-  bool one_ray(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
+  [[gnu::always_inline]] bool one_ray(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
                std::uint32_t count) const {
     const float* const first = query_.blocks + kBlockFloats * place;
     std::uint32_t b = 0;
@@ -149,7 +149,7 @@ class FastLeafVisit {
   static constexpr std::uint32_t kTrianglesABlock = 3 * kLeafWidth / 4;
 
   template <class Ready>
-  std::uint32_t packet_block(Ready& rays, std::uint32_t lanes, std::size_t axis,
+  [[gnu::always_inline]] std::uint32_t packet_block(Ready& rays, std::uint32_t lanes, std::size_t axis,
                              std::uint32_t place) const {
     using R = Repeated<V>;
     const float* const block = query_.blocks + kBlockFloats * place;

@@ -15,8 +15,9 @@ namespace raykiln::render {
 namespace {
 
 /// V: lanes of the walk. B: lanes of a leaf block, dividing kLeafWidth. Twice: lanes of two
-/// neighbouring blocks, or B again. D: lanes of the test in double, dividing the others.
-template <class V, class B, class Twice, class D, int kLeafWidth, bool kAnyHit>
+/// neighbouring blocks, or B again. D: lanes of the test in double of a packet's rays, One: of one
+/// ray, both dividing the others.
+template <class V, class B, class Twice, class D, class One, int kLeafWidth, bool kAnyHit>
 class LeafVisit {
  public:
   using Rays = LeafRays<V::kWidth>;
@@ -85,6 +86,7 @@ class LeafVisit {
   static constexpr bool kTwice = Twice::kWidth == 2 * B::kWidth;
   static constexpr std::size_t kIds = 9 * kLeafWidth;
   static constexpr std::uint32_t kInDoubles = (1U << D::kWidth) - 1U;
+  static constexpr std::uint32_t kOneInDoubles = (1U << One::kWidth) - 1U;
   /// About so many lanes of a block hold a triangle.
   static constexpr std::uint32_t kTrianglesABlock = 3 * kLeafWidth / 4;
 
@@ -149,18 +151,18 @@ class LeafVisit {
     counts_.exact_tests += static_cast<std::uint32_t>(__builtin_popcount(found));
     const std::size_t z = rays.main_axis[lane];
     const std::size_t axes[3] = {next(z), next(next(z)), z};
-    const auto all = [](float value) { return D::set1(static_cast<double>(value)); };
-    ExactRay<D> ray = {all(rays.o[axes[0]][lane]),     all(rays.o[axes[1]][lane]),
-                       all(rays.o[z][lane]),           D::set1(rays.shear_x[lane]),
-                       D::set1(rays.shear_y[lane]),    D::set1(rays.inv_dz[lane]),
+    const auto all = [](float value) { return One::set1(static_cast<double>(value)); };
+    ExactRay<One> ray = {all(rays.o[axes[0]][lane]),     all(rays.o[axes[1]][lane]),
+                       all(rays.o[z][lane]),           One::set1(rays.shear_x[lane]),
+                       One::set1(rays.shear_y[lane]),    One::set1(rays.inv_dz[lane]),
                        all(rays.t_min[lane]),          all(rays.t_max[lane])};
     const float* const block = query_.blocks + kBlockFloats * place;
-    ExactHits<D> exact;
-    for (std::uint32_t from = 0; from < kLeafWidth; from += D::kWidth) {
-      const std::uint32_t asked = found >> from & kInDoubles;
+    ExactHits<One> exact;
+    for (std::uint32_t from = 0; from < kLeafWidth; from += One::kWidth) {
+      const std::uint32_t asked = found >> from & kOneInDoubles;
       if (asked == 0) continue;
-      test_exactly<D>(ray, [&](std::size_t c, std::size_t k) {
-        return D::load(block + (3 * c + axes[k]) * kLeafWidth + from);
+      test_exactly<One>(ray, [&](std::size_t c, std::size_t k) {
+        return One::load(block + (3 * c + axes[k]) * kLeafWidth + from);
       }, exact);
       const std::uint32_t doubt = asked & exact.doubt;
       if (doubt != 0 && ask(rays, lane, index, place, doubt << from)) return true;
@@ -185,8 +187,9 @@ class LeafVisit {
     return update(rays, lane, query_.decide(query_.context, index, shear, block, found));
   }
 
-  bool keep(Rays& rays, std::uint32_t lane, std::size_t index, const ExactHits<D>& exact,
-            std::uint32_t k, std::uint32_t id) const {
+  template <class Exact>
+  bool keep(Rays& rays, std::uint32_t lane, std::size_t index, const Exact& exact, std::uint32_t k,
+            std::uint32_t id) const {
     return update(rays, lane,
                   query_.keep(query_.context, index, exact.t[k], id, exact.u[k], exact.v[k]));
   }

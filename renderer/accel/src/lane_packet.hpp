@@ -31,28 +31,31 @@ class PacketWalk {
   /// done yet: none if they are to stay together `to_the_end`.
   void walk(Batch* batches, std::uint32_t chosen, bool to_the_end) {
     least_credit_ = to_the_end ? -(1 << 30) : 0;
-    for (std::uint32_t rest = chosen; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
-      begin(packets_[i], batches[i]);
-    }
-    struct Walker {
-      Packet* packet;
-      Batch* rays;
-    };
-    Walker walkers[kPackets];
-    std::uint32_t n = 0;
+    turn_ = n_walking_ = n_waiting_ = 0;
     for (; chosen != 0; chosen &= chosen - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(chosen));
-      walkers[n++] = {packets_ + i, batches + i};
+      begin(packets_[i], batches[i]);
+      go_on({packets_ + i, batches + i});
     }
-    while (n != 0) {
-      for (std::uint32_t i = 0; i < n;) {
-        if (step(*walkers[i].packet, *walkers[i].rays)) {
-          ++i;
-        } else {
-          walkers[i] = walkers[--n];
-        }
+    const auto* const nodes = static_cast<const Node*>(query_.nodes);
+    while (n_walking_ + n_waiting_ != 0) {
+      const std::uint32_t due = n_waiting_;
+      std::uint32_t leaves = 0;  // the last packet's bit is the lowest
+      const Walker* const end = walking_ + n_walking_;
+      for (const Walker* walker = walking_; walker != end; ++walker) {
+        leaves = 2 * leaves + step(*walker->packet, *walker->rays, nodes);
       }
+      ++turn_;
+      for (std::uint32_t last = n_walking_ - 1; leaves != 0; leaves &= leaves - 1) {
+        const std::uint32_t i = last - static_cast<std::uint32_t>(__builtin_ctz(leaves));
+        const Walker walker = walking_[i];
+        walking_[i] = walking_[--n_walking_];
+        count_steps(*walker.packet);
+        go_on(walker);
+      }
+      for (std::uint32_t i = 0; i < due; ++i) visit_leaf(waiting_[i]);
+      n_waiting_ -= due;
+      for (std::uint32_t i = 0; i < n_waiting_; ++i) waiting_[i] = waiting_[due + i];
     }
   }
 
@@ -83,16 +86,19 @@ class PacketWalk {
   struct Packet {
     Cell now;
     std::uint32_t size;   ///< cells on the stack
-    bool fetched;         ///< the leaf's block is on its way
     std::int32_t credit;  ///< of steps that many took part in; the packet stops when it is used up
+    std::uint32_t taken;  ///< rays in steps that are not counted yet
+    std::uint32_t since;  ///< the turn of the first of these steps
     Cell stack[kLaneStack];
+  };
+  struct Walker {
+    Packet* packet;
+    Batch* rays;
   };
   /// Half of the lanes shall take part, or a step is cheaper for each ray in a lane of its own.
   static constexpr std::int32_t kLeastShare = 2;
-  /// Two in a row keep intervals in registers between them; the other packets' turns hide the rest.
-  static constexpr std::uint32_t kStepsATurn = 2;
-  static constexpr std::int32_t kFirstCredit = 4 * kW;
-  static constexpr std::int32_t kMostCredit = 8 * kW;
+  static constexpr std::int32_t kFirstCredit = 7 * kW / 2;
+  static constexpr std::int32_t kMostCredit = 7 * kW;
   static constexpr std::size_t kBlockFloats = Leaf::kBlockFloats;
 
   static void begin(Packet& packet, const Batch& rays) {
@@ -101,44 +107,62 @@ class PacketWalk {
     packet.now.node = 0;
     packet.now.lanes = rays.waiting;
     packet.size = 0;
-    packet.fetched = false;
     packet.credit = kFirstCredit;
+    packet.taken = 0;
+    packet.since = 0;
   }
 
-  // One cell further. False when the packet is at its end.
-  bool step(Packet& packet, Batch& rays) {
+  // A packet that may be at a leaf: to the next inner node, where it walks on; or to a leaf with
+  // triangles, where it waits a turn for their blocks to be fetched; or to its end.
+  void go_on(const Walker& walker) {
     const auto* const nodes = static_cast<const Node*>(query_.nodes);
-    const Node node = nodes[packet.now.node];
-    if ((node.place & 3U) != 3U) {
-      if (packet.credit < least_credit_) return stop(packet, rays);
-      descend_some(packet, rays, node);
-      __builtin_prefetch(nodes + packet.now.node);
-      return true;
-    }
-    if (node.word != 0 && !packet.fetched) {
-      fetch(node.place >> 2);
-      packet.fetched = true;
-      return true;
-    }
-    packet.fetched = false;
-    count_visit(packet, packet.now.lanes);
-    if (node.word != 0) {
-      rays.waiting &= ~leaf_.packet(rays, packet.now.lanes, node.place >> 2, node.word);
-    }
-    return pop(packet, rays);
+    Packet& packet = *walker.packet;
+    do {
+      const Node node = nodes[packet.now.node];
+      if ((node.place & 3U) != 3U) {
+        if (packet.credit < least_credit_) {
+          stop(packet, *walker.rays);
+        } else {
+          packet.since = turn_;
+          walking_[n_walking_++] = walker;
+        }
+        return;
+      }
+      if (node.word != 0) {
+        fetch(node.place >> 2);
+        waiting_[n_waiting_++] = walker;
+        return;
+      }
+      count_visit(packet);
+    } while (pop(packet, *walker.rays));
   }
 
-  void count_visit(Packet& packet, std::uint32_t lanes) const {
-    const std::int32_t n = __builtin_popcount(lanes);
-    counts_.leaf_visits += static_cast<std::uint32_t>(n);
+  // The leaf whose blocks were fetched in the turn before.
+  void visit_leaf(const Walker& walker) {
+    Packet& packet = *walker.packet;
+    Batch& rays = *walker.rays;
+    const Node node = static_cast<const Node*>(query_.nodes)[packet.now.node];
+    count_visit(packet);
+    rays.waiting &= ~leaf_.packet(rays, packet.now.lanes, node.place >> 2, node.word);
+    if (pop(packet, rays)) go_on(walker);
+  }
+
+  void count_visit(Packet& packet) const {
+    const auto n = static_cast<std::uint32_t>(__builtin_popcount(packet.now.lanes));
+    counts_.leaf_visits += n;
     counts_.lane_slots += kW;
-    packet.credit = credit_after(packet.credit, n);
+    packet.credit += static_cast<std::int32_t>(n * kLeastShare - kW);
   }
 
-  // A step that n rays took part in.
-  static std::int32_t credit_after(std::int32_t credit, std::int32_t n) {
-    const std::int32_t then = credit + n * kLeastShare - static_cast<std::int32_t>(kW);
-    return then < kMostCredit ? then : kMostCredit;
+  // The steps since the packet began to walk on.
+  void count_steps(Packet& packet) const {
+    const std::uint32_t slots = (turn_ - packet.since) * static_cast<std::uint32_t>(kW);
+    counts_.node_steps += packet.taken;
+    counts_.lane_slots += slots;
+    const std::int32_t then =
+        packet.credit + static_cast<std::int32_t>(packet.taken * kLeastShare - slots);
+    packet.credit = then < kMostCredit ? then : kMostCredit;
+    packet.taken = 0;
   }
 
   void fetch(std::size_t block) const {
@@ -146,74 +170,55 @@ class PacketWalk {
     for (std::size_t line = 0; line < kBlockFloats; line += 16) __builtin_prefetch(first + line);
   }
 
-  // Steps from `node` on, as many as a turn has, up to a leaf. See ScalarWalk::descend. Without a
-  // branch on the rays: what lanes that take no part get is of no account.
-  void descend_some(Packet& packet, const Batch& rays, Node node) {
-    const auto* const nodes = static_cast<const Node*>(query_.nodes);
-    const F slack = V::load(rays.slack);
-    F t0 = V::load(packet.now.t0);
-    F t1 = V::load(packet.now.t1);
-    std::uint32_t lanes = packet.now.lanes;
-    std::uint32_t at = 0;
-    std::uint32_t taken = 0;
-    std::uint32_t steps = 0;
-    std::int32_t credit = packet.credit;
-    Cell* kept = packet.stack + packet.size;
-    do {
-      const std::int32_t n = __builtin_popcount(lanes);
-      taken += static_cast<std::uint32_t>(n);
-      credit = credit_after(credit, n);
-      const std::size_t axis = node.place & 3U;
-      float split;
-      __builtin_memcpy(&split, &node.word, sizeof split);
-      const F inv_d = V::load(rays.inv_d[axis]);
-      const F distance = V::sub(V::set1(split), V::load(rays.o[axis]));
-      const F wide = V::add(slack, V::mul(V::set1(kRelativeSlack), V::abs(distance)));
-      const F widen = V::turn_sign(wide, inv_d);
-      const F leave_near = V::mul(V::add(distance, widen), inv_d);
-      const F enter_far = V::mul(V::sub(distance, widen), inv_d);
-      const F far_t0 = V::max(enter_far, t0);
-      const M only_far = V::lt(leave_near, t0);
-      const std::uint32_t far_alone = V::bits(only_far);
-      const std::uint32_t to_far = lanes & (far_alone | V::bits(V::not_gt(enter_far, t1)));
-      const std::uint32_t to_near = lanes & ~far_alone;
-      const std::uint32_t near = (node.place >> 2) + rays.backward[axis];
-      V::store(kept->t0, far_t0);
-      V::store(kept->t1, t1);
-      kept->node = near ^ 1U;
-      kept->lanes = to_far;
-      kept += to_near != 0 && to_far != 0 ? 1U : 0U;
-      t0 = V::blend(only_far, t0, far_t0);
-      t1 = V::blend(only_far, V::min(leave_near, t1), t1);
-      at = near ^ (to_near == 0 ? 1U : 0U);
-      lanes = to_near == 0 ? to_far : to_near;
-      node = nodes[at];
-      ++steps;
-    } while (steps < kStepsATurn && (node.place & 3U) != 3U);
-    counts_.node_steps += taken;
-    counts_.lane_slots += std::uint64_t{steps} * kW;
-    packet.credit = credit;
-    packet.size = static_cast<std::uint32_t>(kept - packet.stack);
-    V::store(packet.now.t0, t0);
-    V::store(packet.now.t1, t1);
+  // One step, see ScalarWalk::descend; 1 when it leads to a leaf. Without a branch, on the rays or
+  // else: one that is guessed wrongly would throw away what the processor has begun for the packets
+  // that follow. What lanes that take no part get is of no account, nor what is stored above the top
+  // of the stack.
+  static std::uint32_t step(Packet& packet, const Batch& rays, const Node* nodes) {
+    const Node node = nodes[packet.now.node];
+    const std::size_t axis = node.place & 3U;
+    float split;
+    __builtin_memcpy(&split, &node.word, sizeof split);
+    const F t0 = V::load(packet.now.t0);
+    const F t1 = V::load(packet.now.t1);
+    const F inv_d = V::load(rays.inv_d[axis]);
+    const F distance = V::sub(V::set1(split), V::load(rays.o[axis]));
+    const F wide =
+        V::add(V::load(rays.slack), V::mul(V::set1(kRelativeSlack), V::abs(distance)));
+    const F widen = V::turn_sign(wide, inv_d);
+    const F leave_near = V::mul(V::add(distance, widen), inv_d);
+    const F enter_far = V::mul(V::sub(distance, widen), inv_d);
+    const F far_t0 = V::max(enter_far, t0);
+    const M only_far = V::lt(leave_near, t0);
+    const std::uint32_t lanes = packet.now.lanes;
+    const std::uint32_t to_far = lanes & V::bits(V::either(only_far, V::not_gt(enter_far, t1)));
+    const std::uint32_t to_near = lanes & ~V::bits(only_far);
+    const std::uint32_t none_near = (to_near - 1U) >> 31;
+    const std::uint32_t none_far = (to_far - 1U) >> 31;
+    const std::uint32_t near = (node.place >> 2) + rays.backward[axis];
+    Cell& kept = packet.stack[packet.size];
+    V::store(kept.t0, far_t0);
+    V::store(kept.t1, t1);
+    kept.node = near ^ 1U;
+    kept.lanes = to_far;
+    packet.size += 1U - (none_near | none_far);
+    packet.taken += static_cast<std::uint32_t>(__builtin_popcount(lanes));
+    V::store(packet.now.t0, V::blend(only_far, t0, far_t0));
+    V::store(packet.now.t1, V::blend(only_far, V::min(leave_near, t1), t1));
+    const std::uint32_t at = near ^ none_near;
     packet.now.node = at;
-    packet.now.lanes = lanes;
+    packet.now.lanes = to_near | (to_far & (0U - none_near));
+    return ((nodes[at].place & 3U) + 1U) >> 2;
   }
 
-  // To the next cell that a ray has to visit and that is no empty leaf. False when there is none.
+  // To the next cell that a ray has to visit. False when there is none.
   bool pop(Packet& packet, Batch& rays) const {
-    const auto* const nodes = static_cast<const Node*>(query_.nodes);
     while (packet.size > 0) {
       const Cell& cell = packet.stack[--packet.size];
       const F t0 = V::load(cell.t0);
       const std::uint32_t beyond = V::bits(V::lt(V::load(rays.limit), t0));
       const std::uint32_t met = cell.lanes & rays.waiting & ~beyond;
       if (met == 0) continue;
-      const Node node = nodes[cell.node];
-      if (node.word == 0 && (node.place & 3U) == 3U) {
-        count_visit(packet, met);
-        continue;
-      }
       V::store(packet.now.t0, t0);
       V::store(packet.now.t1, V::load(cell.t1));
       packet.now.node = cell.node;
@@ -225,18 +230,22 @@ class PacketWalk {
   }
 
   // Too few rays go together: what is left is handed over.
-  static bool stop(Packet& packet, Batch& rays) {
+  static void stop(Packet& packet, Batch& rays) {
     packet.stack[packet.size++] = packet.now;
     std::uint32_t lanes = 0;
     for (std::uint32_t i = 0; i < packet.size; ++i) lanes |= packet.stack[i].lanes;
     rays.waiting &= lanes;
-    return false;
   }
 
   const LaneQuery& query_;
   LaneCounts& counts_;
   const Leaf& leaf_;
   std::int32_t least_credit_ = 0;
+  std::uint32_t turn_ = 0;
+  std::uint32_t n_walking_ = 0;
+  std::uint32_t n_waiting_ = 0;
+  Walker walking_[kPackets];  ///< at inner nodes
+  Walker waiting_[2 * kPackets];  ///< at leaves; those due and those found meanwhile
   Packet packets_[kPackets];
 };
 

@@ -64,7 +64,7 @@ class LaneWalk {
   using I = typename V::I;
   using M = typename V::M;
   using Group = LaneGroup<V>;
-  static constexpr std::uint32_t kPackets = 4;
+  static constexpr std::uint32_t kPackets = 8;
   using Source = RaySource<V, Leaf, kPackets>;
   using Packets = PacketWalk<V, Leaf, kPackets>;
   static constexpr std::size_t kBlockFloats = Leaf::kBlockFloats;
