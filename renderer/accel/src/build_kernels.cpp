@@ -13,7 +13,7 @@ constexpr int kLanes = 4;
 
 namespace raykiln::render {
 
-const BuildKernels kAnyBuildKernels{count_planes, count_bins, code_bins,
-                                    find_codes,   bound_bins, split_references};
+const BuildKernels kAnyBuildKernels{count_planes, count_bins, find_codes, bound_bins,
+                                    split_references};
 
 }  // namespace raykiln::render

@@ -11,7 +11,7 @@ namespace raykiln::render {
 /// Bins across an axis of a cell; with the two of its faces they fit into a byte.
 inline constexpr std::size_t kMaxBins = 240;
 /// Up to so many references the sides of every plane are counted.
-inline constexpr std::size_t kCountingMax = 24;
+inline constexpr std::size_t kCountingMax = 32;
 
 /// References as the kernels see them: eight words each, lo.xyz, id, hi.xyz, nothing.
 using ReferenceWords = const float*;
@@ -100,8 +100,6 @@ struct BuildKernels {
   /// Counts extents in bins and writes the codes of the references.
   void (*count_bins)(const BinScale& scale, ReferenceWords references, std::size_t n, BinCode* codes,
                      const BinTables& tables);
-  /// The codes alone.
-  void (*code_bins)(const BinScale& scale, ReferenceWords references, std::size_t n, BinCode* codes);
   /// Writes the places of codes with a byte in first + [0, span] where `axes` is set, and up to four
   /// places more; gives their number. There are less than 2^16 codes.
   std::size_t (*find_codes)(const BinCode* codes, std::size_t n, BinCode first, BinCode span,

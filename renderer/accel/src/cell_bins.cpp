@@ -36,13 +36,7 @@ void BinCounts::count(const BuildKernels& kernels, const BinGrid& grid,
   std::uint32_t* const rows = rows_.data();
   const BinTables tables{{rows, rows + row_, rows + 2 * row_},
                          {rows + 3 * row_, rows + 4 * row_, rows + 5 * row_}};
-  std::array<BinCode, 512> unwanted;
-  const std::size_t block = codes == nullptr ? unwanted.size() : references.size();
-  for (std::size_t begin = 0; begin < references.size(); begin += block) {
-    const auto part = references.subspan(begin, std::min(block, references.size() - begin));
-    kernels.count_bins(grid.scale(), words_of(part.data()), part.size(),
-                       codes == nullptr ? unwanted.data() : codes, tables);
-  }
+  kernels.count_bins(grid.scale(), words_of(references.data()), references.size(), codes, tables);
 }
 
 }  // namespace raykiln::render

@@ -52,7 +52,6 @@ class BinCounts {
  public:
   void clear(std::size_t bins);
   void add(const BinCounts& other);
-  /// Writes the codes, too, unless `codes` is null.
   void count(const BuildKernels& kernels, const BinGrid& grid, std::span<const Reference> references,
              BinCode* codes);
 

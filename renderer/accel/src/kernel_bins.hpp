@@ -77,11 +77,6 @@ void count_bins(const BinScale& scale, ReferenceWords references, std::size_t n,
   }
 }
 
-void code_bins(const BinScale& scale, ReferenceWords references, std::size_t n, BinCode* codes) {
-  const ScaleLanes lanes = lanes_of(scale);
-  for (std::size_t i = 0; i < n; ++i) codes[i] = code_of(lanes, references + 8 * i);
-}
-
 /// For each set of four codes, a bit each: how many there are, and which.
 struct FoundLanes {
   std::uint16_t lane[16][4];

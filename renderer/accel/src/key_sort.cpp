@@ -7,7 +7,7 @@ namespace raykiln::render {
 namespace {
 
 constexpr unsigned kMaxDigitBits = 12;
-constexpr std::size_t kInsertionMax = 16;
+constexpr std::size_t kInsertionMax = 32;
 using Histogram = std::array<std::uint32_t, 1U << kMaxDigitBits>;
 
 struct Digit {

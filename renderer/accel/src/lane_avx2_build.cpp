@@ -14,7 +14,7 @@ constexpr int kLanes = 8;
 
 namespace raykiln::render {
 
-const BuildKernels kAvx2BuildKernels{count_planes, count_bins, code_bins,
-                                    find_codes,   bound_bins, split_references};
+const BuildKernels kAvx2BuildKernels{count_planes, count_bins, find_codes, bound_bins,
+                                    split_references};
 
 }  // namespace raykiln::render

@@ -40,18 +40,25 @@ SweepResult PlaneSearch::find(Runs runs, const SweepInput& input, double leaf_co
 
 void PlaneSearch::count_bins(Runs runs, const BinGrid& grid, bool parallel) {
   bins_.clear(grid.count());
+  first_code_.clear();
+  std::size_t n = 0;
+  for (const auto run : runs) {
+    first_code_.push_back(n);
+    n += run.size();
+  }
+  if (codes_.size() < n) codes_.resize(n);
   if (!parallel) {
-    if (runs.size() == 1 && codes_.size() < runs[0].size()) codes_.resize(runs[0].size());
-    for (const auto run : runs) {
-      if (looks_for_stop(run.size())) return;
-      bins_.count(context_.kernels, grid, run, runs.size() == 1 ? codes_.data() : nullptr);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (looks_for_stop(runs[i].size())) return;
+      bins_.count(context_.kernels, grid, runs[i], codes_.data() + first_code_[i]);
     }
     return;
   }
   run_bins_.resize(runs.size());
   context_.for_each(runs.size(), [&](std::size_t i) {
     run_bins_[i].clear(grid.count());
-    if (!context_.stopped()) run_bins_[i].count(context_.kernels, grid, runs[i], nullptr);
+    if (context_.stopped()) return;
+    run_bins_[i].count(context_.kernels, grid, runs[i], codes_.data() + first_code_[i]);
   });
   for (const BinCounts& counted : run_bins_) bins_.add(counted);
 }
@@ -104,7 +111,7 @@ double PlaneSearch::look_into(Segments& chosen, Runs runs, const BinGrid& grid,
   for (std::size_t a = 0; a < 3; ++a) {
     if (wanted_.has(a)) counts.events_swept += 2 * std::uint64_t{input.n};
   }
-  gather(chosen, runs, grid, parallel);
+  gather(chosen, runs, parallel);
   for (const Segment& s : chosen) {
     if (s.least > least) continue;
     const std::span<EventKey> keys = std::span(keys_).subspan(s.begin, s.end - s.begin);
@@ -134,15 +141,14 @@ void PlaneSearch::place(Segments& chosen, std::size_t bins, std::size_t runs) {
   waste_ = keys;
 }
 
-void PlaneSearch::gather(Segments& chosen, Runs runs, const BinGrid& grid, bool parallel) {
+void PlaneSearch::gather(Segments& chosen, Runs runs, bool parallel) {
   cursors_.resize(chosen.size() + 1);
   for (std::size_t i = 0; i < chosen.size(); ++i) cursors_[i] = chosen[i].begin;
   cursors_.back() = waste_;
   if (!parallel) {
-    const BinCode* const codes = runs.size() == 1 ? codes_.data() : nullptr;
-    for (const auto run : runs) {
-      if (looks_for_stop(run.size())) break;
-      gather_run(run, codes, grid, cursors_);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (looks_for_stop(runs[i].size())) break;
+      gather_run(runs[i], codes_.data() + first_code_[i], cursors_);
     }
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i].end = cursors_[i];
     return;
@@ -156,7 +162,7 @@ void PlaneSearch::gather(Segments& chosen, Runs runs, const BinGrid& grid, bool 
     ++cursors_.back();
   }
   context_.for_each(runs.size(), [&](std::size_t r) {
-    if (!context_.stopped()) gather_run(runs[r], nullptr, grid, end_of[r]);
+    if (!context_.stopped()) gather_run(runs[r], codes_.data() + first_code_[r], end_of[r]);
   });
   for (std::size_t i = 0; i < chosen.size(); ++i) {  // planar extents gave one key, not two
     auto end = keys_.begin() + static_cast<std::ptrdiff_t>(chosen[i].begin);
@@ -171,19 +177,15 @@ void PlaneSearch::gather(Segments& chosen, Runs runs, const BinGrid& grid, bool 
 // Few references have an end in the bins: codes are looked at four at a time, and what is found is
 // written without a branch, if need be to where nobody looks.
 void PlaneSearch::gather_run(std::span<const Reference> run, const BinCode* codes,
-                             const BinGrid& grid, Cursors& cursors) {
+                             Cursors& cursors) {
   constexpr std::size_t kBlock = 512;
-  std::array<BinCode, kBlock> own;
   std::array<std::uint16_t, kBlock + 4> found;
   EventKey* const keys = keys_.data();
   std::size_t* const place_of = cursors.data();
   const auto none = static_cast<std::uint32_t>(cursors.size() - 1);
   for (std::size_t begin = 0; begin < run.size(); begin += kBlock) {
     const auto block = run.subspan(begin, std::min(kBlock, run.size() - begin));
-    const BinCode* of_block = codes == nullptr ? own.data() : codes + begin;
-    if (codes == nullptr) {
-      context_.kernels.code_bins(grid.scale(), words_of(block.data()), block.size(), own.data());
-    }
+    const BinCode* const of_block = codes + begin;
     const std::size_t n = context_.kernels.find_codes(of_block, block.size(), wanted_.first,
                                                       wanted_.span, wanted_.axes, found.data());
     for (std::size_t k = 0; k < n; ++k) {

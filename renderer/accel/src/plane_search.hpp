@@ -49,15 +49,15 @@ class PlaneSearch {
   double look_into(Segments& chosen, Runs runs, const BinGrid& grid, const SweepInput& input,
                    double least, bool parallel, Choosers& choosers, BuildStats& counts);
   void place(Segments& chosen, std::size_t bins, std::size_t runs);
-  void gather(Segments& chosen, Runs runs, const BinGrid& grid, bool parallel);
-  void gather_run(std::span<const Reference> run, const BinCode* codes, const BinGrid& grid,
-                  Cursors& cursors);
+  void gather(Segments& chosen, Runs runs, bool parallel);
+  void gather_run(std::span<const Reference> run, const BinCode* codes, Cursors& cursors);
 
   BuildContext& context_;
   BinCounts bins_;
   std::array<BinBounds, 3> bounds_;
   std::vector<BinCounts> run_bins_;  ///< of each run, when they are counted as tasks
-  std::vector<BinCode> codes_;       ///< of the references of a small cell
+  std::vector<std::size_t> first_code_;  ///< of each run, in codes_
+  std::vector<BinCode> codes_;       ///< of all references of the cell, run after run
   Segments segments_;                ///< that may hold the cheapest plane
   Segments first_;                   ///< the most promising of them
   std::array<std::array<std::uint32_t, kMaxBins + 2>, 3> segment_of_;

@@ -197,6 +197,9 @@ class PlainCut {
       right_lo_.set_half(h, cut_lo < right_lo ? cut_lo : right_lo);
       right_hi_.set_half(h, cut_hi > right_hi ? cut_hi : right_hi);
     }
+    // Cuts lie in the plane, wherever their rounding led.
+    left_lo_.x[axis] = std::min({p_[0].x[axis], p_[1].x[axis], p_[2].x[axis]});
+    right_hi_.x[axis] = std::max({p_[0].x[axis], p_[1].x[axis], p_[2].x[axis]});
     left_hi_.x[axis] = right_lo_.x[axis] = plane;
   }
 

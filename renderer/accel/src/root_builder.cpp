@@ -13,7 +13,7 @@ class RootBuilder {
  public:
   RootBuilder(BuildContext& context, int max_depth)
       : context_(context),
-        search_(context),
+        search_(std::make_unique<PlaneSearch>(context)),
         max_depth_(max_depth),
         result_(std::make_unique<Subtree>()) {}
 
@@ -25,6 +25,7 @@ class RootBuilder {
     const double top_share = input.share * levels / all;
     input.share -= top_share;
     result_->root = build_cell(std::move(input), top_share);
+    search_.reset();  // its memory is as large as the root
     build_waiting();
     return std::move(result_);
   }
@@ -68,7 +69,8 @@ class RootBuilder {
   SplitPlane choose(const SubtreeInput& input, std::size_t n) {
     std::vector<std::span<const Reference>> runs;
     for (const Run& run : input.runs) runs.push_back(run.view());
-    return choose_plane(context_, search_, runs,
+    note_live(n * sizeof(BinCode));
+    return choose_plane(context_, *search_, runs,
                         {input.cell, static_cast<std::uint32_t>(n), input.budget}, input.depth,
                         max_depth_, context_.concurrent, result_->counts);
   }
@@ -201,7 +203,7 @@ class RootBuilder {
   }
 
   BuildContext& context_;
-  PlaneSearch search_;
+  std::unique_ptr<PlaneSearch> search_;
   int max_depth_;
   std::unique_ptr<Subtree> result_;
   std::vector<SubtreeInput> waiting_;

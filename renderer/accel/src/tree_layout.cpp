@@ -172,7 +172,7 @@ bool lay_out(BuildContext& context, Subtree& root, KdTree& tree) {
   if (2 + all.nodes > kMaxIndices || all.blocks > kMaxIndices) {
     throw std::length_error("kd-tree: over 2^30 nodes or blocks");
   }
-  tree.nodes.assign(2 + all.nodes, make_leaf(0, 0));
+  resize_in_large_pages(tree.nodes, 2 + all.nodes);  // empty leaves
   if (tree.params.leaf_width == 16) {
     resize_in_large_pages(tree.blocks16, all.blocks);
   } else {
