@@ -70,33 +70,62 @@ inline std::uint32_t outside_interval(const FilterRay<V>& ray, const FilterValue
   return V::bits(V::both(sure, V::either(before, beyond)));
 }
 
+/// Sheared corners in the plane across the ray.
+template <class V>
+struct ShearedCorners {
+  typename V::F x[3], y[3];
+};
+
+/// Edge functions, and z of the corners, of V::kWidth triangles of a block of kLeafWidth; `block`
+/// points to the first of them.
+template <class V, int kLeafWidth>
+inline ShearedCorners<V> form_edges(const FilterRay<V>& ray, const float* block, FilterValues<V>& f) {
+  constexpr std::size_t kCorner = 3 * kLeafWidth;
+  ShearedCorners<V> at;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float* corner = block + c * kCorner;
+    f.z[c] = V::sub(V::load(corner + ray.z), ray.oz);
+    at.x[c] = V::sub_mul(V::sub(V::load(corner + ray.x), ray.ox), ray.sx, f.z[c]);
+    at.y[c] = V::sub_mul(V::sub(V::load(corner + ray.y), ray.oy), ray.sy, f.z[c]);
+  }
+  f.u = edge_function<V>(at.x[2], at.y[2], at.x[1], at.y[1]);
+  f.v = edge_function<V>(at.x[0], at.y[0], at.x[2], at.y[2]);
+  f.w = edge_function<V>(at.x[1], at.y[1], at.x[0], at.y[0]);
+  return at;
+}
+
+/// A bit for each triangle whose edge functions, off by e at most, do not rule out that it is met.
+template <class V>
+inline std::uint32_t edges_allow(const FilterValues<V>& f, typename V::F e) {
+  const auto least = V::min(V::min(f.u, f.v), f.w);
+  const auto most = V::max(V::max(f.u, f.v), f.w);
+  const auto missed = V::both(V::lt(least, V::turn_sign(e, V::set1(-1.0F))), V::lt(e, most));
+  return ~V::bits(missed) & ((1U << V::kWidth) - 1U);
+}
+
 /// A bit for each of V::kWidth triangles of a block of kLeafWidth that may be hit; `block` points to
 /// the first of them.
 template <class V, int kLeafWidth>
 inline std::uint32_t may_be_hit(const FilterRay<V>& ray, const float* block) {
   using F = typename V::F;
-  constexpr std::size_t kCorner = 3 * kLeafWidth;
   FilterValues<V> f;
-  F x[3], y[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float* corner = block + c * kCorner;
-    f.z[c] = V::sub(V::load(corner + ray.z), ray.oz);
-    x[c] = V::sub_mul(V::sub(V::load(corner + ray.x), ray.ox), ray.sx, f.z[c]);
-    y[c] = V::sub_mul(V::sub(V::load(corner + ray.y), ray.oy), ray.sy, f.z[c]);
-  }
-  f.u = edge_function<V>(x[2], y[2], x[1], y[1]);
-  f.v = edge_function<V>(x[0], y[0], x[2], y[2]);
-  f.w = edge_function<V>(x[1], y[1], x[0], y[0]);
+  const auto [x, y] = form_edges<V, kLeafWidth>(ray, block, f);
   const F h = V::max(largest_of<V>(x[0], x[1], x[2]), largest_of<V>(y[0], y[1], y[2]));
   const F m = V::add(h, largest_of<V>(f.z[0], f.z[1], f.z[2]));
   // m (h + ...) first: where a product of corners overflows, so does this, and the lane passes.
   f.mh = V::mul(m, V::mul_add(V::set1(kFilterCorner), m, h));
   const F e = V::mul_add(f.mh, V::set1(kFilterEdge), V::set1(kFilterUnderflow));
-  const F least = V::min(V::min(f.u, f.v), f.w);
-  const F most = V::max(V::max(f.u, f.v), f.w);
-  const auto missed = V::both(V::lt(least, V::turn_sign(e, V::set1(-1.0F))), V::lt(e, most));
-  const std::uint32_t lanes = ~V::bits(missed) & ((1U << V::kWidth) - 1U);
+  const std::uint32_t lanes = edges_allow<V>(f, e);
   return lanes == 0 ? 0 : lanes & ~outside_interval<V>(ray, f, e);
+}
+
+/// The e of may_be_hit at most, where no coordinate of a corner is farther than `reach` from that of
+/// the ray's origin: no slope is beyond 1, so h is up to 2 reach and m up to 3 reach.
+inline float largest_error(float reach) {
+  const float r = 1.001F * reach;
+  const float h = 2.0F * r;
+  const float m = 3.0F * r;
+  return 1.001F * (m * (h + kFilterCorner * m)) * kFilterEdge + kFilterUnderflow;
 }
 
 /// A bit for each of V::kWidth ids that is neither padding nor `known`.

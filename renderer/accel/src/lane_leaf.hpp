@@ -29,8 +29,53 @@ class LeafVisit {
 
   /// The ray `index`, which is in `lane`, at a leaf of `count` blocks from `place` on. True when it
   /// is done.
-  bool one_ray(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
-               std::uint32_t count) const {
+  [[gnu::always_inline]] bool one_ray(Rays& rays, std::uint32_t lane, std::size_t index,
+                                      std::uint32_t place, std::uint32_t count) const {
+    if (count >= kMany) return many_blocks(rays, lane, index, place, count);
+    return few_blocks(rays, lane, index, place, count);
+  }
+
+  /// The rays of `lanes`, all with the same main axis. A bit for each that is done.
+  template <class Ready>
+  std::uint32_t packet(Ready& rays, std::uint32_t lanes, std::uint32_t place,
+                       std::uint32_t count) const {
+    const auto n = static_cast<std::uint32_t>(__builtin_popcount(lanes));
+    const std::uint32_t tests =
+        kTwice ? (count + 1) / 2 : count * static_cast<std::uint32_t>(kLeafWidth / B::kWidth);
+    std::uint32_t done = 0;
+    if (n * tests < kTrianglesABlock * count) {
+      if (count < kMany) {
+        for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+          const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+          if (few_blocks(rays, lane, rays.index[lane], place, count)) done |= 1U << lane;
+        }
+        return done;
+      }
+      for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        if (many_blocks(rays, lane, rays.index[lane], place, count)) done |= 1U << lane;
+      }
+      return done;
+    }
+    const std::size_t axis = rays.main_axis[__builtin_ctz(lanes)];
+    for (std::uint32_t b = 0; b < count && lanes != done; ++b) {
+      counts_.block_tests += static_cast<std::uint32_t>(__builtin_popcount(lanes & ~done));
+      done |= packet_block(rays, lanes & ~done, axis, place + b);
+    }
+    return done;
+  }
+
+ private:
+  static constexpr bool kTwice = Twice::kWidth == 2 * B::kWidth;
+  static constexpr std::size_t kIds = 9 * kLeafWidth;
+  static constexpr std::uint32_t kInDoubles = (1U << D::kWidth) - 1U;
+  static constexpr std::uint32_t kOneInDoubles = (1U << One::kWidth) - 1U;
+  static constexpr std::uint32_t kMany = 8;  ///< blocks of a leaf
+  /// About so many lanes of a block hold a triangle.
+  static constexpr std::uint32_t kTrianglesABlock = 3 * kLeafWidth / 4;
+
+  bool few_blocks(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
+                  std::uint32_t count) const {
     const float* const first = query_.blocks + kBlockFloats * place;
     std::uint32_t b = 0;
     if constexpr (kTwice) {
@@ -59,36 +104,43 @@ class LeafVisit {
     return false;
   }
 
-  /// The rays of `lanes`, all with the same main axis. A bit for each that is done.
-  template <class Ready>
-  std::uint32_t packet(Ready& rays, std::uint32_t lanes, std::uint32_t place,
-                       std::uint32_t count) const {
-    const auto n = static_cast<std::uint32_t>(__builtin_popcount(lanes));
-    const std::uint32_t tests =
-        kTwice ? (count + 1) / 2 : count * static_cast<std::uint32_t>(kLeafWidth / B::kWidth);
-    std::uint32_t done = 0;
-    if (n * tests < kTrianglesABlock * count) {
-      for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
-        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-        if (one_ray(rays, lane, rays.index[lane], place, count)) done |= 1U << lane;
+  // A leaf of many blocks holds long triangles that are mostly missed by far: one error bound serves
+  // for all of them.
+  [[gnu::noinline]] bool many_blocks(Rays& rays, std::uint32_t lane, std::size_t index,
+                                     std::uint32_t place, std::uint32_t count) const {
+    constexpr std::uint32_t kStep = kTwice ? 2 : 1;
+    using L = Twice;
+    const auto ray = filter_ray<L>(rays, lane);
+    const auto e = L::set1(largest_error(reach_of_box(rays, lane)));
+    for (std::uint32_t b = 0; b < count; b += kStep) {
+      const std::uint32_t n = count - b < kStep ? count - b : kStep;
+      const float* const block = query_.blocks + kBlockFloats * (place + b);
+      std::uint32_t allowed = n < kStep ? 1 : 0;
+      for (std::uint32_t at = 0; allowed == 0 && at < kStep * kLeafWidth; at += L::kWidth) {
+        FilterValues<L> f;
+        form_edges<L, kLeafWidth>(ray, block + at, f);
+        allowed = edges_allow<L>(f, e);
       }
-      return done;
+      if (allowed == 0) {
+        counts_.block_tests += n;
+      } else if (few_blocks(rays, lane, index, place + b, n)) {
+        return true;
+      }
     }
-    const std::size_t axis = rays.main_axis[__builtin_ctz(lanes)];
-    for (std::uint32_t b = 0; b < count && lanes != done; ++b) {
-      counts_.block_tests += static_cast<std::uint32_t>(__builtin_popcount(lanes & ~done));
-      done |= packet_block(rays, lanes & ~done, axis, place + b);
-    }
-    return done;
+    return false;
   }
 
- private:
-  static constexpr bool kTwice = Twice::kWidth == 2 * B::kWidth;
-  static constexpr std::size_t kIds = 9 * kLeafWidth;
-  static constexpr std::uint32_t kInDoubles = (1U << D::kWidth) - 1U;
-  static constexpr std::uint32_t kOneInDoubles = (1U << One::kWidth) - 1U;
-  /// About so many lanes of a block hold a triangle.
-  static constexpr std::uint32_t kTrianglesABlock = 3 * kLeafWidth / 4;
+  // How far a coordinate of the root's box is from that of the ray's origin, at most.
+  float reach_of_box(const Rays& rays, std::uint32_t lane) const {
+    float reach = 0.0F;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float lo = __builtin_fabsf(query_.box_lo[k] - rays.o[k][lane]);
+      const float hi = __builtin_fabsf(query_.box_hi[k] - rays.o[k][lane]);
+      const float more = lo > hi ? lo : hi;
+      reach = more > reach ? more : reach;
+    }
+    return reach;
+  }
 
   template <class Ready>
   std::uint32_t packet_block(Ready& rays, std::uint32_t lanes, std::size_t axis,

@@ -150,6 +150,29 @@ TEST(Kernels, RaysThatGoTogetherAndPart) {
   }
 }
 
+// Leaves of many blocks have a filter of their own, for rays in lanes and for those in packets.
+TEST(Kernels, LeavesOfManyBlocks) {
+  struct Case {
+    TestMesh mesh;
+    int depth;
+    std::uint64_t least_nodes;  ///< trees of few nodes are walked otherwise
+  };
+  for (const Case& c : {Case{terrain(300), 11, 1025}, Case{soup(60'000, 3, 2.0F), 10, 1025},
+                        Case{slivers(3000), 3, 1}}) {
+    for (const int width : {8, 16}) {
+      render::BuildParams params;
+      params.leaf_width = width;
+      params.max_depth = c.depth;
+      const auto tree = build(c.mesh, params);
+      EXPECT_GE(render::build_stats(*tree).nodes, c.least_nodes);
+      expect_same(*tree, hard_rays(*tree, c.mesh, 400, 43));
+      expect_same(*tree, beams(*tree, 44));
+      const auto few = beams(*tree, 45);
+      expect_brute_force(*tree, {few.begin(), few.begin() + 100});
+    }
+  }
+}
+
 TEST(Kernels, AnyLengthOfStream) {
   const TestMesh mesh = soup(600, 2, 2.0F);
   const auto tree = build(mesh);
