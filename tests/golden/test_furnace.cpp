@@ -62,12 +62,13 @@ TEST(Furnace, TruncatedSeriesForEveryEstimator) {
   }
 }
 
-/// Rays that follow a camera ray where roulette begins at the second reflection and lets paths go on with twice their
-/// throughput rho^k: m - 1 for certain, m the first k >= 2 with 2 rho^k < 1, and 2 rho^m (1 + rho + ...) beyond.
+/// Rays that follow a camera ray where roulette begins at the second reflection and lets paths go on with three
+/// times their throughput rho^k: m - 1 for certain, m the first k >= 2 with 3 rho^k < 1, and 3 rho^m (1 + rho + ...)
+/// beyond.
 double expected_bounces(double rho) {
   int m = 2;
-  while (2.0 * std::pow(rho, m) >= 1.0) ++m;
-  return m - 1 + 2.0 * std::pow(rho, m) / (1.0 - rho);
+  while (3.0 * std::pow(rho, m) >= 1.0) ++m;
+  return m - 1 + 3.0 * std::pow(rho, m) / (1.0 - rho);
 }
 
 // Roulette has no bias: E / (1 - rho) without the factor 1 - rho^(D + 1). 6 checks: 4e-4.

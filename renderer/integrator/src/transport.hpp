@@ -11,7 +11,7 @@ namespace raykiln::render {
 /// Reflections after which roulette may end a path, and what it multiplies the throughput by to get the chance
 /// of going on: see renderer/integrator/README.md.
 inline constexpr int kFirstDrawAfter = 1;
-inline constexpr double kRouletteFactor = 2.0;
+inline constexpr double kRouletteFactor = 3.0;
 
 /// Data of effects that are not simulated are not here: no point light, a black background, no
 /// environment, no textures, roulette off.

@@ -38,11 +38,11 @@ inline bool finite(const Rgbd& c) {
 }
 inline bool zero(const Rgb& c) { return c == Rgb(0.0F); }
 
-/// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is twice its throughput
+/// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is three times its throughput
 /// so far. The part of the throughput that is a change of medium is left out of p: inside glass of
 /// index n radiance is n^2 times larger, on the way from the camera throughput n^2 times smaller,
 /// and such a path is worth no less. What goes on has a throughput of at least
-/// half of `scale`, so weights stay bounded.
+/// a third of `scale`, so weights stay bounded.
 inline bool survives_roulette(PathState& path, const VertexKey& key) {
   if (path.bounce <= static_cast<std::uint32_t>(kFirstDrawAfter)) return true;
   const Rgbd& t = path.throughput;
