@@ -184,3 +184,38 @@ def test_the_cli_submits_a_choice_and_passes_the_mark_on(api, tmp_path):
     assert "without=refraction (refraction bounded)" in sample.stdout
     here = json.loads(raykiln("effects", path, "--effects", "without=refraction", "--json").stdout)
     assert here == job["effects"]
+
+
+def test_triangles_tested_in_float_show_nearly_the_same_and_say_so(api, tmp_path):
+    """By REST and by the command line: the same float picture, its mark everywhere, and light but for roundings."""
+    grid = scenes.grid_zip(60)
+    path = tmp_path / "grid.zip"
+    path.write_bytes(grid)
+    choice = {"without": ["watertight_triangles"]}
+    scene = api.scene(grid)
+    (full, exact), (draft, by_float) = (rendered(api, scene, effects) for effects in ("auto", choice))
+    line = verdicts(full["effects"])["watertight_triangles"]
+    assert line["called_for"] and line["simulated"] and line["evidence"] == "7200 triangles"
+    line = verdicts(draft["effects"])["watertight_triangles"]
+    assert (line["called_for"], line["simulated"], line["grade"]) == (True, False, "unbounded")
+    label = "without=watertight_triangles (watertight_triangles unbounded)"
+    assert draft["effects"]["label"] == label and draft["effects"]["approximation"]
+    warning = next(w for w in draft["warnings"] if w["code"] == "deliberate_approximation")
+    assert "watertight_triangles (unbounded)" in warning["message"]
+    assert by_float.metadata["raykiln:effects"] == label
+    assert "watertight_triangles" not in by_float.metadata["raykiln:simulated"].split(",")
+    assert abs(by_float.pixels.mean() / exact.pixels.mean() - 1) < 1e-3
+    near = np.isclose(by_float.pixels, exact.pixels, rtol=1e-4).all(axis=2)
+    assert near.mean() > 0.9, "hits move by roundings; few paths come out otherwise"
+    sample = api.json(f"/v1/jobs/{draft['id']}/samples", params={"x": 20, "y": 15, "sample": 3})
+    assert sample["effects"] == label
+
+    options = ("--effects", "without=watertight_triangles", "--size", "40x30", "--samples", 8, "--depth", 12)
+    here, there = tmp_path / "here.exr", tmp_path / "there.exr"
+    done = raykiln("render", path, "-o", here, *options)
+    assert done.returncode == 0, done.stderr
+    assert "lacks what the scene calls for, on request: watertight_triangles" in done.stderr
+    done = raykiln("submit", path, "-o", there, *options, "--server", api.daemon.url)
+    assert done.returncode == 0 and f"effects {label}" in done.stderr
+    for picture in (read_exr(here.read_bytes()), read_exr(there.read_bytes())):
+        assert digest(picture) == digest(by_float) and picture.metadata["raykiln:effects"] == label
