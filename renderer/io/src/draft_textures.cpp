@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "raykiln/image/picture_file.hpp"
+#include "raykiln/math/srgb.hpp"
 #include "scene_file_names.hpp"
 
 namespace raykiln::render::io {
@@ -14,11 +15,6 @@ constexpr std::array<std::uint32_t, 3> kNoCorners{kNoUv, kNoUv, kNoUv};
 
 std::uint64_t bytes_of(const PictureFile& picture) {
   return picture.srgb8.size() + picture.linear.size() * sizeof(float);
-}
-
-/// The inverse of sRGB's curve.
-double display_value(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
 PictureChannels channels_for(PictureRole role) {
@@ -142,7 +138,7 @@ std::optional<std::uint32_t> DraftTextures::decode(const std::string& name, std:
   auto& picture = std::get<PictureFile>(read);
   if (role == PictureRole::kData && picture.format == PictureFormat::kPng) {
     for (float& value : picture.linear) {  // of 16 bits, read as colours
-      value = static_cast<float>(display_value(static_cast<double>(value)));
+      value = static_cast<float>(srgb_of_linear(static_cast<double>(value)));
     }
   }
   if (picture.channels == 1 && is_one_all_over(picture)) return kNoTexture;

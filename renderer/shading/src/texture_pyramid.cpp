@@ -13,10 +13,6 @@ namespace {
 
 int half(int size) { return std::max(size / 2, 1); }
 
-double encoded(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
 /// What of a row of `size` texels one of half(size) covers: up to three of them, and how much of each.
 struct Cover {
   int first = 0, count = 0;
@@ -35,23 +31,31 @@ Cover cover(int i, int size) {
   return c;
 }
 
+/// Of a byte: its linear value, or what it is of 255.
+using ByteValues = std::array<double, 256>;
+const ByteValues& byte_values(bool colours) {
+  static const auto tables = [] {
+    std::array<ByteValues, 2> made{};
+    for (std::size_t i = 0; i < made[0].size(); ++i) {
+      made[0][i] = static_cast<double>(i) / 255.0;
+      made[1][i] = linear_of_srgb(made[0][i]);
+    }
+    return made;
+  }();
+  return tables[colours ? 1 : 0];
+}
+
 /// Linear values of the texels, or their bytes over 255.
 class Values {
  public:
-  Values(const TextureImage& image, bool data) : image_(image) {
-    const bool colours = !data && image.channels == 3;
-    for (std::size_t i = 0; i < of_byte_.size(); ++i) {
-      const double display = static_cast<double>(i) / 255.0;
-      of_byte_[i] = colours ? linear_of_srgb(display) : display;
-    }
-  }
+  Values(const TextureImage& image, bool colours) : image_(image), of_byte_(byte_values(colours)) {}
   [[nodiscard]] double at(std::size_t i) const {
     return image_.srgb8.empty() ? static_cast<double>(image_.linear[i]) : of_byte_[image_.srgb8[i]];
   }
 
  private:
   const TextureImage& image_;
-  std::array<double, 256> of_byte_{};
+  const ByteValues& of_byte_;
 };
 
 double mean(const TextureImage& image, const Values& values, const Cover& x, const Cover& y, int channel) {
@@ -82,8 +86,8 @@ std::size_t bytes_below(const TextureImage& image) {
 }  // namespace
 
 TextureImage halved(const TextureImage& image, bool data) {
-  const Values values(image, data);
   const bool bytes = !image.srgb8.empty(), colours = !data && image.channels == 3;
+  const Values values(image, colours);
   TextureImage smaller{.name = {}, .width = half(image.width), .height = half(image.height), .srgb8 = {}, .linear = {},
                        .channels = image.channels};
   const std::size_t values_in_all = static_cast<std::size_t>(smaller.width) * static_cast<std::size_t>(smaller.height) *
@@ -100,7 +104,7 @@ TextureImage halved(const TextureImage& image, bool data) {
       for (int c = 0; c < image.channels; ++c) {
         const double value = mean(image, values, columns, rows, c);
         if (bytes) {
-          const double display = colours ? encoded(value) : value;
+          const double display = colours ? srgb_of_linear(value) : value;
           smaller.srgb8.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(255.0 * display), 0L, 255L)));
         } else {
           smaller.linear.push_back(static_cast<float>(value));

@@ -184,6 +184,18 @@ TEST(SrgbCurve, KnownValues) {
   EXPECT_EQ(linear_of_srgb(1.0), 1.0);
   EXPECT_NEAR(linear_of_srgb(0.5), 0.21404114, 1e-8);
   EXPECT_NEAR(linear_of_srgb(0.04045), 0.0031308, 1e-7);
+  EXPECT_EQ(srgb_of_linear(0.0), 0.0);
+  EXPECT_NEAR(srgb_of_linear(1.0), 1.0, 1e-15);
+  EXPECT_NEAR(srgb_of_linear(0.21404114), 0.5, 1e-8);
+  EXPECT_NEAR(srgb_of_linear(0.0031308), 0.04045, 1e-6);
+}
+
+/// A texture that is decoded and encoded again is the same file.
+TEST(SrgbCurve, EveryByteComesBack) {
+  for (int byte = 0; byte < 256; ++byte) {
+    EXPECT_EQ(std::lround(255.0 * srgb_of_linear(linear_of_srgb(byte / 255.0))), byte);
+    EXPECT_EQ(srgb_of_linear(linear_of_srgb(byte / 255.0)) <= 1.0, true) << byte;
+  }
 }
 
 }  // namespace

@@ -12,4 +12,9 @@ namespace raykiln::render {
   return std::pow((display + 0.055) / 1.055, 2.4);
 }
 
+/// Display value of a linear value in [0, 1]; larger ones go on along the curve.
+[[nodiscard]] inline double srgb_of_linear(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
 }  // namespace raykiln::render
