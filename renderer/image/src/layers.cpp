@@ -152,6 +152,15 @@ void LayerFilm::fold(const PixelRect& tile, const LayerBlock& block) {
   }
 }
 
+LayerFilm LayerFilm::rows(int y0, int y1) const {
+  LayerFilm part(set_, width_, 0);
+  part.height_ = y1 - y0;
+  const auto row = static_cast<std::ptrdiff_t>(stride_) * width_;
+  part.sums_.assign(sums_.begin() + row * y0, sums_.begin() + row * y1);
+  if (!tails_.empty()) part.tails_.assign(tails_.begin() + row * y0, tails_.begin() + row * y1);
+  return part;
+}
+
 std::vector<float> LayerFilm::resolve(Layer layer, std::span<const float> samples) const {
   const std::size_t channels = spec(layer).channels, offset = offset_of(set_, layer);
   const std::size_t pixels = stride_ == 0 || !set_.contains(layer) ? 0 : sums_.size() / stride_;

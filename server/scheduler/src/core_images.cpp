@@ -71,7 +71,7 @@ void Scheduler::Core::image(const JobId& id, const std::string& layer,
   if (job == nullptr) return load_image(*snapshot, reply);
   if (job->last_picture) return layers ? image_when_stored(id, layer, reply) : reply(job->last_picture);
   if (!job->film) return reply(image_not_ready());
-  if (layers && is_large(*job) && !job->layers) return gather_layers(*job, framed(*snapshot), reply);
+  if (layers && is_large(*job)) return gather_layers(*job, framed(*snapshot), reply);
   JobImagePtr fresh = resolve(*job, layers);
   remember(fresh);
   reply(std::move(fresh));

@@ -1,4 +1,4 @@
-// Error layers of a large picture that is being rendered. To make them takes seconds: a strip of its film is copied on the
+// Layers of a large picture that is being rendered. To make them takes seconds: a strip of its films is copied on the
 // strand, read on the thread of the disk, and then comes the next. Rows of different strips may be of different moments, none older
 // than the revision; all that there is of a pixel is of the same samples.
 #include <algorithm>
@@ -6,12 +6,15 @@
 
 #include "core.hpp"
 #include "raykiln/accuracy/pixel_error.hpp"
+#include "raykiln/scheduler/layers.hpp"
 
 namespace raykiln::server {
 namespace {
 
 /// Rows on either side that the errors of a strip are drawn to.
 constexpr int kMargin = 1;
+/// Who may wait for the layers of one picture. Far more than there are threads of the HTTP server to wait with.
+constexpr std::size_t kMostWaiting = 64;
 
 /// Rows y0 <= y < y1 of a film, with those that their errors need.
 struct Strip {
@@ -19,6 +22,7 @@ struct Strip {
   render::SampleRelation relation{};
   std::vector<render::PixelSums> pixels;  ///< from row `first` on
   std::vector<float> rgb, seconds;        ///< of y0 to y1 alone
+  std::optional<render::LayerFilm> layers{};  ///< of y0 to y1 alone, where the job asks for some
 };
 
 Strip strip_of(const LiveJob& job, int y0, int y1) {
@@ -32,6 +36,7 @@ Strip strip_of(const LiveJob& job, int y0, int y1) {
   }
   strip.rgb.assign(job.picture.rgb.begin() + 3 * begin, job.picture.rgb.begin() + 3 * end);
   strip.seconds.assign(job.pixel_seconds.begin() + begin, job.pixel_seconds.begin() + end);
+  if (job.layers) strip.layers = job.layers->rows(y0, y1);
   return strip;
 }
 
@@ -41,6 +46,19 @@ void make_room(JobImage& image, int width, int height) {
   image.error.resize(3 * pixels);
   image.samples.resize(pixels);
   image.seconds.resize(pixels);
+}
+
+/// `first`: pixel at which the part begins.
+void put_layers(JobImage& image, const render::LayerFilm& part, std::ptrdiff_t first, std::size_t pixels) {
+  const auto found = resolved(&part, std::span(image.samples).subspan(static_cast<std::size_t>(first), pixels));
+  const std::size_t in_all = image.samples.size();
+  if (image.layers.empty()) {
+    for (const StoredLayer& layer : found) image.layers.push_back({layer.name, std::vector<float>(layer.values.size() / pixels * in_all)});
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto channels = static_cast<std::ptrdiff_t>(found[i].values.size() / pixels);
+    std::copy(found[i].values.begin(), found[i].values.end(), image.layers[i].values.begin() + channels * first);
+  }
 }
 
 void put_strip(JobImage& image, const Strip& strip, int width, int height) {
@@ -54,13 +72,17 @@ void put_strip(JobImage& image, const Strip& strip, int width, int height) {
                  [](double error) { return static_cast<float>(error); });
   std::transform(strip.pixels.begin() + above, strip.pixels.begin() + above + pixels, image.samples.begin() + begin,
                  [](const render::PixelSums& sums) { return static_cast<float>(sums.samples()); });
+  if (strip.layers) put_layers(image, *strip.layers, begin, static_cast<std::size_t>(pixels));
 }
 
 }  // namespace
 
-/// Those who ask meanwhile get the same.
+/// Those who ask meanwhile get the same, as far as there is room for them to wait.
 void Scheduler::Core::gather_layers(LiveJob& job, std::shared_ptr<JobImage> image, const Reply<JobImagePtr>& reply) {
-  if (job.gathering) return job.gathering->waiting.push_back(reply);
+  if (job.gathering) {
+    if (job.gathering->waiting.size() < kMostWaiting) return job.gathering->waiting.push_back(reply);
+    return reply(Error{ErrorKind::kNotFound, "image_not_ready", "too many wait for the layers of this picture", "layer", 1});
+  }
   job.gathering = std::make_shared<Gathering>();
   job.gathering->image = std::move(image);
   job.gathering->waiting.push_back(reply);

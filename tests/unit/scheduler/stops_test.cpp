@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
 
 #include "support/server_rig.hpp"
 #include "support/temp_directory.hpp"
@@ -164,6 +165,59 @@ TEST(Stops, LargePicturesAreLookedAtOnASampleAndJudgedInFullInTheEnd) {
   EXPECT_EQ((*all)->image.rgb, (*image)->image.rgb);
   EXPECT_EQ((*all)->samples.size(), std::size_t{160} * 120);
   EXPECT_EQ((*all)->error.size(), 3 * (*all)->samples.size());
+}
+
+/// Sums of what every pixel's light is made of: the picture itself, if all of a pixel is of the same samples.
+void expect_parts_of_light(const JobImage& image) {
+  ASSERT_EQ(image.layers.size(), 4U);
+  EXPECT_EQ(image.layers[0].name, "depth");
+  EXPECT_EQ(image.layers[0].values.size(), image.samples.size());
+  for (std::size_t i = 0; i < image.image.rgb.size(); ++i) {
+    const float sum = image.layers[1].values.at(i) + image.layers[2].values.at(i) + image.layers[3].values.at(i);
+    ASSERT_NEAR(sum, image.image.rgb[i], 1e-5F * (1.0F + sum)) << i;
+  }
+}
+
+// Layers of a large picture come strip by strip, those that the job asks for too; who is one too many is told so.
+TEST(Stops, LayersOfALargePictureAreGatheredForABoundedNumber) {
+  const TempDirectory directory;
+  ServerRig rig(directory.path());
+  rig.scheduler.reset();
+  rig.judged_at_once_px = 1000;  // strips of 6 rows
+  rig.start();
+  JobRequest request = small_job(rig.add_scene("a room")->scene.record.id, 1'000'000);
+  request.width = 160;
+  request.height = 120;
+  request.layers = "depth,emission,direct,indirect";
+  const std::string id = rig.submit(request)->job.id;
+  rig.follow(id, [](const JobSnapshot& s) { return s.progress.samples_per_pixel >= 4.0; });
+  // The strand is held up until all have asked, so that none of them finds the layers made.
+  std::promise<void> all_asked;
+  rig.scheduler->status([asked = all_asked.get_future().share()](const auto&) { asked.wait(); });
+  constexpr int kAsking = 100, kMostWaiting = 64;
+  std::vector<std::promise<Result<JobImagePtr>>> answers(kAsking);
+  for (auto& answer : answers) {
+    rig.scheduler->image(id, "all", [&answer](Result<JobImagePtr> image) { answer.set_value(std::move(image)); });
+  }
+  all_asked.set_value();
+  int refused = 0;
+  for (auto& answer : answers) {
+    const auto image = answer.get_future().get();
+    if (!image) {
+      ++refused;
+      EXPECT_EQ(image.error().code, "image_not_ready");
+      EXPECT_EQ(image.error().retry_after_s, 1);
+      continue;
+    }
+    expect_error_layers(**image);
+    if (&answer == &answers.front()) expect_parts_of_light(**image);
+  }
+  EXPECT_EQ(refused, kAsking - kMostWaiting);
+  (void)rig.cancel(id);
+  rig.wait_final(id);
+  const auto stored = answer_of<JobImagePtr>([&](auto reply) { rig.scheduler->image(id, "all", reply); });
+  ASSERT_TRUE(stored);
+  expect_parts_of_light(**stored);
 }
 
 // Its final state comes before the store has it: should that fail, the record does not go on naming it.

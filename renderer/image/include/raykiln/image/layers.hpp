@@ -90,6 +90,9 @@ class LayerFilm {
   void fold(const PixelRect& tile, const LayerBlock& block);
   void drop_incomplete() { tails_.clear(); }
 
+  /// A film of the rows y0 <= y < y1 alone, to be resolved elsewhere while this one is folded into.
+  [[nodiscard]] LayerFilm rows(int y0, int y1) const;
+
   /// channels values a pixel. `samples`: those of the film that count, one a pixel.
   [[nodiscard]] std::vector<float> resolve(Layer layer, std::span<const float> samples) const;
 
