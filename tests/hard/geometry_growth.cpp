@@ -1,6 +1,7 @@
 // K04, K08: hair, and one giant beside a million tiny triangles.
 #include <sys/resource.h>
 
+#include "hard/support/build_work.hpp"
 #include "hard/support/hard_meshes.hpp"
 #include "hard/support/hits.hpp"
 #include "hard/support/report.hpp"
@@ -19,11 +20,6 @@ double peak_megabytes() {
 }
 
 // ---- K04: needles of length 1 and width 1e-3 ----
-
-/// What a build did: events looked at and moved, passes over keys, clips.
-double work_of(const render::BuildStats& stats) {
-  return static_cast<double>(stats.events_swept + stats.events_moved + stats.keys_sorted_passes + stats.clips);
-}
 
 TEST(K04_Needles, StopAtTheBudget) {
   Row row("K04", "N = 1e3, 1e4, 1e5 needles of length 1, width 1e-3, in the unit cube; budgets 1.5 to 8",
