@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "raykiln/accel/kernels.hpp"
+#include "raykiln/integrator/make_ready.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -37,7 +38,22 @@ PathSettings folded(PathSettings s, const Emitters& emitters) {
   return s;
 }
 
+bool reads_copies(const TransportScene& scene, const PathSettings& settings) {
+  return scene.scene.textures != nullptr && settings.simulated.contains(Effect::kTextures) &&
+         settings.texture_reading == TextureReading::kFootprint && scene.pyramids != nullptr;
+}
+
+/// `settings`: folded().
+bool draws_by_tree(const TransportScene& scene, const PathSettings& settings) {
+  return settings.emitter_sampling && scene.emitters.by_tree(settings.emitter_choice);
+}
+
 }  // namespace
+
+bool make_ready(const TransportScene& scene, const PathSettings& settings, const std::stop_token& stop) {
+  if (reads_copies(scene, settings) && !scene.pyramids->make(stop)) return false;
+  return !draws_by_tree(scene, folded(settings, scene.emitters)) || scene.emitters.make_tree(scene.scene, stop);
+}
 
 Transport make_transport(const TransportScene& scene, const PathSettings& settings) {
   const EffectSet simulated = settings.simulated;
@@ -60,7 +76,7 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
   if (!simulated.contains(Effect::kBackground)) t.background = Rgb(0.0F);
   if (!simulated.contains(Effect::kEnvironment)) t.environment = nullptr;
   if (!simulated.contains(Effect::kTextures)) t.textures = nullptr;
-  if (t.textures != nullptr && settings.texture_reading == TextureReading::kFootprint && scene.pyramids != nullptr) {
+  if (reads_copies(scene, settings)) {
     scene.pyramids->make();
     t.pyramids = scene.pyramids;
   }
@@ -69,8 +85,7 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
   t.gaps.back_faces = t.gaps.back_faces && simulated.contains(Effect::kOneSidedSurfaces);
   t.environment_sampling = t.environment != nullptr && settings.emitter_sampling &&
                            simulated.contains(Effect::kEmitterSampling);
-  t.emitters_by_tree =
-      t.settings.emitter_sampling && scene.emitters.by_tree(settings.emitter_choice);
+  t.emitters_by_tree = draws_by_tree(scene, t.settings);
   t.has_light = simulated.contains_any(kSources) &&
                 (t.has_lights_without_surface() || t.background != Rgb(0.0F) ||
                  t.environment != nullptr || scene.emitters.has_triangles());

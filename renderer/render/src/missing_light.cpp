@@ -73,8 +73,8 @@ class Probe {
 };
 
 MissingLight compare(const PreparedScene& scene, const RenderSettings& settings,
-                     const RenderSettings& whole, std::uint64_t probes) {
-  if (probes < 2) return {};
+                     const RenderSettings& whole, std::uint64_t probes, const std::stop_token& stop) {
+  if (probes < 2 || !make_ready(scene, settings, stop) || !make_ready(scene, whole, stop)) return {};
   const std::vector<PathStart> starts = spread(settings, probes);
   Probe some(scene, settings), all(scene, whole);
   std::vector<double> lacking, full;
@@ -136,7 +136,7 @@ std::uint64_t affordable_probes(const PreparedScene& scene, const RenderSettings
 }
 
 MissingLight cut_off_light(const PreparedScene& scene, const RenderSettings& settings,
-                           std::uint64_t probes) {
+                           std::uint64_t probes, const std::stop_token& stop) {
   const bool unlimited = settings.light_model.roulette && settings.branches == 1 && path_limit(settings) >= kRouletteLimit;
   if (unlimited) return {};
   RenderSettings cut = settings;
@@ -145,11 +145,11 @@ MissingLight cut_off_light(const PreparedScene& scene, const RenderSettings& set
   RenderSettings whole = cut;
   whole.max_depth = std::max(*cut.max_depth, kRouletteLimit);
   whole.light_model.roulette = true;
-  return compare(scene, cut, whole, probes);
+  return compare(scene, cut, whole, probes, stop);
 }
 
 MissingLight unseen_light(const PreparedScene& scene, const RenderSettings& settings,
-                          std::uint64_t probes) {
+                          std::uint64_t probes, const std::stop_token& stop) {
   const bool nothing_to_find = !scene.emitters().has_triangles() && scene.emitters().environment() == nullptr;
   if (samples_emitters(settings) || nothing_to_find) return {};
   RenderSettings alone = settings;
@@ -157,14 +157,14 @@ MissingLight unseen_light(const PreparedScene& scene, const RenderSettings& sett
   RenderSettings whole = alone;
   whole.emitter_sampling = true;
   whole.effects.without.erase(Effect::kEmitterSampling);
-  return compare(scene, alone, whole, probes);
+  return compare(scene, alone, whole, probes, stop);
 }
 
 std::vector<RenderNotice> missing_light_notices(const PreparedScene& scene,
-                                                const RenderSettings& settings) {
+                                                const RenderSettings& settings, const std::stop_token& stop) {
   std::vector<RenderNotice> notices;
   const std::uint64_t probes = affordable_probes(scene, settings);
-  const MissingLight cut = cut_off_light(scene, settings, probes);
+  const MissingLight cut = cut_off_light(scene, settings, probes, stop);
   if (cut.differing > 0 && cut.share() + kTold * cut.share_error() >= kWorthSaying) {
     std::string told = "paths end after ";
     told.append(std::to_string(path_limit(settings))).append(" reflections: ");
@@ -176,7 +176,7 @@ std::vector<RenderNotice> missing_light_notices(const PreparedScene& scene,
     told.append(" of the picture's light is missing, however many samples there are");
     notices.push_back({"truncated_paths", std::move(told)});
   }
-  const MissingLight unseen = unseen_light(scene, settings, probes);
+  const MissingLight unseen = unseen_light(scene, settings, probes, stop);
   if (unseen.probes > 0 && unseen.missing > kCertain * unseen.standard_error) {
     char most[32];
     std::snprintf(most, sizeof most, "%.3g",

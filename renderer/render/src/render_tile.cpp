@@ -86,6 +86,10 @@ TileResult render_tile(const PreparedScene& scene, const RenderSettings& setting
                        std::stop_token stop) {
   TileResult result = empty_result(rect, blocks, settings.layers);
   if (rect.width() <= 0 || rect.height() <= 0) return result;
+  if (!make_ready(scene, settings, stop)) {
+    result.stopped = true;
+    return result;
+  }
   const CameraRays camera = camera_rays(scene, settings);
   PathTracer tracer({scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids()}, camera,
                     path_settings(scene, settings));

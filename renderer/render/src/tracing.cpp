@@ -1,5 +1,7 @@
 #include "tracing.hpp"
 
+#include "raykiln/integrator/make_ready.hpp"
+
 namespace raykiln::render {
 
 namespace {
@@ -59,6 +61,11 @@ CameraRays camera_rays(const PreparedScene& scene, const RenderSettings& setting
   const Bounds3f geometry = bounds(scene.tree());
   if (!settings.crop) return {camera, settings.width, settings.height, geometry};
   return {camera, settings.crop->full_width, settings.crop->full_height, geometry};
+}
+
+bool make_ready(const PreparedScene& scene, const RenderSettings& settings, const std::stop_token& stop) {
+  const TransportScene transport{scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids()};
+  return make_ready(transport, path_settings(scene, settings), stop);
 }
 
 }  // namespace raykiln::render

@@ -1,6 +1,8 @@
 // From settings to what the integrator takes; shared by tiles and single samples.
 #pragma once
 
+#include <stop_token>
+
 #include "prepared_scene.hpp"
 #include "raykiln/integrator/path_tracer.hpp"
 #include "raykiln/render/render.hpp"
@@ -9,6 +11,8 @@ namespace raykiln::render {
 
 [[nodiscard]] PathSettings path_settings(const PreparedScene& scene,
                                          const RenderSettings& settings);
+/// Makes what paths of these settings need of the scene, if no one has; false once stop is requested.
+[[nodiscard]] bool make_ready(const PreparedScene& scene, const RenderSettings& settings, const std::stop_token& stop);
 [[nodiscard]] CameraRays camera_rays(const PreparedScene& scene, const RenderSettings& settings);
 
 }  // namespace raykiln::render

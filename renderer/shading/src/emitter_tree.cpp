@@ -24,7 +24,8 @@ EmitterBounds bounds_of(const TriangleMesh& mesh, std::uint32_t id, double power
 }  // namespace
 
 EmitterTree::EmitterTree(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-                         std::span<const double> weights, std::span<const Material> materials)
+                         std::span<const double> weights, std::span<const Material> materials,
+                         const std::stop_token& stop)
     : shines_(words_for(mesh.triangles.size())), before_(shines_.size()) {
   std::vector<EmitterBounds> leaves;
   leaves.reserve(triangles.size());
@@ -36,7 +37,7 @@ EmitterTree::EmitterTree(const TriangleMesh& mesh, std::span<const std::uint32_t
     emitters_.push_back({area, id});
     shines_[id / kBits] |= std::uint64_t{1} << id % kBits;
   }
-  tree_ = LightTree(leaves);
+  tree_ = LightTree(leaves, stop);
   std::uint32_t seen = 0;
   for (std::size_t w = 0; w < shines_.size(); ++w) {
     before_[w] = seen;

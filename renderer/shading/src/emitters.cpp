@@ -119,8 +119,14 @@ EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex) cons
 }
 
 const EmitterTree& Emitters::tree(const Scene& scene) const {
-  std::call_once(tree_->built, [&] { tree_->tree.emplace(scene.mesh, triangles_, weights_, scene.materials); });
+  if (!tree_->made.done()) make_tree(scene, {});
   return *tree_->tree;
+}
+
+bool Emitters::make_tree(const Scene& scene, const std::stop_token& stop) const {
+  return tree_->made.once(stop, [&] {
+    return tree_->tree.emplace(scene.mesh, triangles_, weights_, scene.materials, stop).whole();
+  });
 }
 
 EmitterSample Emitters::sample(const Scene& scene, const VertexKey& vertex,

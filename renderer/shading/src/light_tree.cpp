@@ -83,9 +83,9 @@ int length_of(std::uint64_t way) { return static_cast<int>(std::bit_width(way)) 
 
 }  // namespace
 
-LightTree::LightTree(std::span<const EmitterBounds> emitters) {
+LightTree::LightTree(std::span<const EmitterBounds> emitters, const std::stop_token& stop) {
   if (emitters.empty()) return;
-  light_tree::Built built = light_tree::build(emitters);
+  light_tree::Built built = light_tree::build(emitters, stop);
   nodes_ = std::move(built.nodes);
   ways_ = std::move(built.ways);
 }

@@ -59,6 +59,8 @@ struct Cone {
   bool one_sided = false;
 };
 
+constexpr std::size_t kAskFrom = 1024;  ///< emitters of a node at which it is asked whether to stop
+
 constexpr double kHalfPi = 1.57079632679489661923;
 
 /// The narrowest cone that holds both, or one a little wider. Of more than a half space it has no direction.
@@ -116,15 +118,15 @@ double power_scale(std::span<const EmitterBounds> emitters) {
 
 class Builder {
  public:
-  explicit Builder(std::span<const EmitterBounds> emitters)
-      : emitters_(emitters), order_(emitters.size()), power_scale_(power_scale(emitters)) {
+  Builder(std::span<const EmitterBounds> emitters, const std::stop_token& stop)
+      : emitters_(emitters), stop_(stop), order_(emitters.size()), power_scale_(power_scale(emitters)) {
     std::iota(order_.begin(), order_.end(), 0U);
     built_.ways.resize(emitters.size());
     built_.nodes.reserve(2 * emitters.size() - 1);
     built_.nodes.emplace_back();
     grow(0, 0, order_.size(), {.turns = 0, .depth = 0});
   }
-  Built take() { return std::move(built_); }
+  Built take() { return stopped_ ? Built{} : std::move(built_); }
 
  private:
   struct Way {
@@ -136,6 +138,10 @@ class Builder {
   /// Makes node `at` of order_[begin, end).
   Grown grow(std::size_t at, std::size_t begin, std::size_t end, const Way& way) {
     if (end - begin == 1) return leaf(at, order_[begin], way);
+    if (end - begin >= kAskFrom && stop_.stop_requested()) {
+      stopped_ = true;  // nobody will look at the nodes
+      return {{}, Moments(emitters_[order_[begin]])};
+    }
     const std::size_t split =
         way.depth < kDeepestSplitByCost ? by_cost(begin, end) : begin + (end - begin) / 2;
     const std::size_t children = built_.nodes.size();
@@ -234,6 +240,8 @@ class Builder {
   }
 
   std::span<const EmitterBounds> emitters_;
+  const std::stop_token& stop_;
+  bool stopped_ = false;
   std::vector<std::uint32_t> order_;
   double power_scale_;
   Built built_;
@@ -241,6 +249,6 @@ class Builder {
 
 }  // namespace
 
-Built build(std::span<const EmitterBounds> emitters) { return Builder(emitters).take(); }
+Built build(std::span<const EmitterBounds> emitters, const std::stop_token& stop) { return Builder(emitters, stop).take(); }
 
 }  // namespace raykiln::render::light_tree

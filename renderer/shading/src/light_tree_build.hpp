@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "raykiln/shading/light_tree.hpp"
@@ -13,7 +14,7 @@ struct Built {
   std::vector<std::uint64_t> ways;
 };
 
-/// Precondition: not empty.
-[[nodiscard]] Built build(std::span<const EmitterBounds> emitters);
+/// Of nothing where stop was requested before it was whole. Precondition: not empty.
+[[nodiscard]] Built build(std::span<const EmitterBounds> emitters, const std::stop_token& stop);
 
 }  // namespace raykiln::render::light_tree

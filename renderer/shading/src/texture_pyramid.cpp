@@ -85,7 +85,9 @@ std::size_t bytes_below(const TextureImage& image) {
 
 }  // namespace
 
-TextureImage halved(const TextureImage& image, bool data) {
+TextureImage halved(const TextureImage& image, bool data) { return *halved(image, data, {}); }
+
+std::optional<TextureImage> halved(const TextureImage& image, bool data, const std::stop_token& stop) {
   const bool bytes = !image.srgb8.empty(), colours = !data && image.channels == 3;
   const Values values(image, colours);
   TextureImage smaller{.name = {}, .width = half(image.width), .height = half(image.height), .srgb8 = {}, .linear = {},
@@ -98,6 +100,7 @@ TextureImage halved(const TextureImage& image, bool data) {
     smaller.linear.reserve(values_in_all);
   }
   for (int y = 0; y < smaller.height; ++y) {
+    if (stop.stop_requested()) return std::nullopt;
     const Cover rows = cover(y, image.height);
     for (int x = 0; x < smaller.width; ++x) {
       const Cover columns = cover(x, image.width);
@@ -129,20 +132,26 @@ TexturePyramids::TexturePyramids(const SurfaceTextures* textures) : textures_(te
   }
 }
 
-void TexturePyramids::make() const {
-  if (on_demand_ == nullptr) return;
-  std::call_once(on_demand_->made, [this] {
+bool TexturePyramids::go_on(const TextureImage& image, bool data, std::vector<TextureImage>& copies,
+                            const std::stop_token& stop) {
+  while (true) {
+    const TextureImage& last = copies.empty() ? image : copies.back();
+    if (last.width <= 1 && last.height <= 1) return true;
+    auto next = halved(last, data, stop);
+    if (!next) return false;
+    copies.push_back(std::move(*next));
+  }
+}
+
+bool TexturePyramids::make(const std::stop_token& stop) const {
+  if (on_demand_ == nullptr) return true;
+  return on_demand_->made.once(stop, [&] {
     std::vector<Pyramid>& pyramids = on_demand_->pyramids;
     for (std::size_t i = 0; i < pyramids.size(); ++i) {
       if (!pyramids[i].wanted) continue;
-      std::vector<TextureImage> copies;
-      const TextureImage* last = &textures_->images[i / 2];
-      while (last->width > 1 || last->height > 1) {
-        copies.push_back(halved(*last, i % 2 != 0));
-        last = &copies.back();
-      }
-      pyramids[i].copies = std::move(copies);
+      if (!go_on(textures_->images[i / 2], i % 2 != 0, pyramids[i].copies, stop)) return false;
     }
+    return true;
   });
 }
 

@@ -137,7 +137,7 @@ class Scheduler::Core {
   void start_rendering(LiveJob& job, ReadyScene scene);
   void canvas_ready(const JobId& id, const std::shared_ptr<Canvas>& canvas);
   void begin_rendering(LiveJob& job, Canvas& canvas);
-  void look_for_missing_light(const JobId& id, const render::RenderSettings& settings,
+  void look_for_missing_light(const LiveJob& of, const render::RenderSettings& settings,
                               std::shared_ptr<const render::PreparedScene> scene);
   void dispatch();
   void dispatch_one(LiveJob& job);

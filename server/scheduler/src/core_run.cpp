@@ -149,7 +149,7 @@ void Scheduler::Core::start_rendering(LiveJob& job, ReadyScene scene) {
   warn_of_approximation(s.effects, s.warnings);
   warn_of_light_model(*settings, *scene.scene, s.warnings);
   warn_of_picture(*settings, *scene.scene, scene.tree.stats, s.warnings);
-  look_for_missing_light(s.id, *settings, scene.prepared);
+  look_for_missing_light(job, *settings, scene.prepared);
   s.statistics.tree_build_seconds = scene.built_now ? scene.tree.build_seconds : 0.0;
   s.statistics.tree = tree_figures(scene.tree.stats);
   job.scene = std::move(scene);
@@ -199,13 +199,13 @@ void Scheduler::Core::begin_rendering(LiveJob& job, Canvas& canvas) {
 }
 
 /// Tells light that samples never bring. Found out where it holds up nobody who waits for this strand.
-void Scheduler::Core::look_for_missing_light(const JobId& id, const render::RenderSettings& settings,
+void Scheduler::Core::look_for_missing_light(const LiveJob& of, const render::RenderSettings& settings,
                                              std::shared_ptr<const render::PreparedScene> scene) {
   if (!scene) return;
-  disk_.post([this, id, settings, scene] {
+  disk_.post([this, id = of.snapshot.id, settings, scene, stop = of.stop.get_token()] {
     std::vector<JobWarning> found;
     try {
-      warn_of_missing_light(settings, *scene, found);
+      warn_of_missing_light(settings, *scene, found, stop);
     } catch (const std::exception& fault) {
       parts_.log.warn("missing_light_not_judged", {{"job", id}, {"why", fault.what()}});
     }

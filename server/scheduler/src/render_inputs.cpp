@@ -124,8 +124,8 @@ void warn_of_picture(const render::RenderSettings& settings, const render::Scene
 }
 
 void warn_of_missing_light(const render::RenderSettings& settings, const render::PreparedScene& scene,
-                           std::vector<JobWarning>& warnings) {
-  for (const auto& found : render::missing_light_notices(scene, settings)) {
+                           std::vector<JobWarning>& warnings, const std::stop_token& stop) {
+  for (const auto& found : render::missing_light_notices(scene, settings, stop)) {
     add_once({found.code, found.message, found.code == "unseen_light" ? "/emitter_sampling" : "/max_depth"},
              warnings);
   }

@@ -1,6 +1,12 @@
 // Pictures with textures: against the same scene without, and closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <thread>
+
 #include "raykiln/sampling/warp.hpp"
 #include "raykiln/scene/surface_textures.hpp"
 #include "support/scene_pieces.hpp"
@@ -189,6 +195,52 @@ TEST(Textures, AFootprintTakesTheNoiseOfAFinePattern) {
   EXPECT_LT(wide.standard_error, 0.25 * exact.standard_error);
   EXPECT_NEAR(wide.mean.x, exact.mean.x, 4.0 * exact.standard_error);
   EXPECT_GT(exact.mean.x, 0.01);
+}
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_of(const std::function<void()>& work) {
+  const auto begin = Clock::now();
+  work();
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// The first tile makes smaller copies of all textures. Whoever cancels meanwhile does not wait for them, nor
+/// do the other workers, who wait for the one that is at it. Against the time of the same copies on the same machine, the best of
+/// three turns each: a turn may meet with a busy machine.
+TEST(Textures, ACancelIsAnsweredWhileCopiesAreMade) {
+  constexpr int kSide = 3000;
+  TextureImage large{.name = "", .width = kSide, .height = kSide, .srgb8 = {}, .linear = {}};
+  large.srgb8.assign(std::size_t{3} * kSide * kSide, 100);
+  SceneBuilder b = square_with(diffuse_material(Rgb(0.8F)), std::move(large), false);
+  b.point_light({0.5F, 0.5F, 1.0F}, Rgb(1.0F));
+  b.camera({0.5F, 0.5F, 2.0F}, {0.5F, 0.5F, 0.0F}, {0, 1, 0}, 0.5F);
+  RenderSettings settings = square(1, 0);
+  settings.texture_reading = TextureReading::kFootprint;
+  const std::vector<SampleBlock> blocks = blocks_for(1);
+  double whole = 1e30, after_stop = 1e30;
+  for (int turn = 0; turn < 3; ++turn) {
+    whole = std::min(whole, seconds_of([&, scene = b.prepare()] {
+                       EXPECT_FALSE(render_tile(*scene, settings, {0, 0, 1, 1}, blocks, {}).stopped);
+                     }));
+  }
+  for (int turn = 0; turn < 3; ++turn) {
+    const auto scene = b.prepare();
+    std::stop_source source;
+    const auto tile = [&] { return render_tile(*scene, settings, {0, 0, 1, 1}, blocks, source.get_token()).stopped; };
+    auto one = std::async(std::launch::async, tile), other = std::async(std::launch::async, tile);
+    std::this_thread::sleep_for(std::chrono::duration<double>(0.05 * whole));
+    bool stopped = false;
+    const double seconds = seconds_of([&] {
+      source.request_stop();
+      stopped = one.get() & other.get();
+    });
+    if (stopped) after_stop = std::min(after_stop, seconds);
+    const auto later = render_tile(*scene, settings, {0, 0, 1, 1}, blocks, {});
+    EXPECT_FALSE(later.stopped) << "nothing is left half made";
+    EXPECT_NEAR(support::estimate(later).mean.x, support::estimate(render_tile(*b.prepare(), settings, {0, 0, 1, 1}, blocks, {})).mean.x, 0.0);
+  }
+  EXPECT_LT(after_stop, 0.4 * whole);
 }
 
 // Texels wider than pixels are read as they are: no bit differs. Nor where there are no textures.

@@ -163,6 +163,14 @@ TEST(LightTree, DrawsDoNotDependOnTheUnitOfLengthOrPower) {
   }
 }
 
+TEST(LightTree, IsEmptyWhereItWasStopped) {
+  std::stop_source source;
+  const auto emitters = many(5000);
+  EXPECT_EQ(LightTree(emitters, source.get_token()).size(), 5000U);
+  source.request_stop();
+  EXPECT_EQ(LightTree(emitters, source.get_token()).size(), 0U);
+}
+
 TEST(LightTree, StaysFlatInDegenerateCases) {
   EXPECT_LE(LightTree(many(30000)).depth(), 40);
   // All in one place, and each twice as far as the one before: no split by place helps, or every one takes one off.

@@ -235,6 +235,22 @@ SurfaceTextures checked() {
   return textures;
 }
 
+// What was stopped is gone on with by the next who asks, and is the same.
+TEST(TexturePyramid, CopiesThatWereStoppedAreMadeLater) {
+  const SurfaceTextures textures = checked();
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_FALSE(halved(textures.images[0], false, source.get_token()));
+  const TexturePyramids stopped(&textures), straight(&textures);
+  EXPECT_FALSE(stopped.make(source.get_token()));
+  EXPECT_TRUE(stopped.make());
+  EXPECT_TRUE(stopped.make(source.get_token())) << "they are there";
+  EXPECT_TRUE(straight.make());
+  for (const double level : {0.5, 1.0, 2.3, 6.0}) {
+    EXPECT_EQ(stopped.value(textures.materials[0].base, 0.3, 0.4, level), straight.value(textures.materials[0].base, 0.3, 0.4, level));
+  }
+}
+
 TEST(TexturePyramid, AFootprintReadsWhatItCovers) {
   const SurfaceTextures textures = checked();
   const TexturePyramids pyramids(&textures);
@@ -253,6 +269,7 @@ TEST(TexturePyramid, AFootprintReadsWhatItCovers) {
   }
   EXPECT_EQ(read(std::numeric_limits<double>::quiet_NaN()), exact);
   EXPECT_GE(pyramids.bytes(), 1365U * 3 * sizeof(float));
+  EXPECT_TRUE(pyramids.make()) << "made already";
   EXPECT_EQ(TexturePyramids(nullptr).bytes(), 0U);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "raykiln/render/render.hpp"
@@ -24,20 +25,22 @@ struct MissingLight {
 [[nodiscard]] std::uint64_t affordable_probes(const PreparedScene& scene, const RenderSettings& settings);
 
 /// What the limit of the paths' length cuts off: the other sample goes on and is ended by roulette.
-/// Tests nothing (0 probes) where roulette ends paths and the limit is not below kRouletteLimit.
+/// Tests nothing (0 probes) where roulette ends paths and the limit is not below kRouletteLimit, nor where stop is
+/// requested before what paths need of the scene has been made.
 [[nodiscard]] MissingLight cut_off_light(const PreparedScene& scene, const RenderSettings& settings,
-                                         std::uint64_t probes);
+                                         std::uint64_t probes, const std::stop_token& stop = {});
 
 /// Light of emitters and of the environment that paths seldom find by themselves, where a picture is to do without emitter
 /// sampling: the other sample has it. Its mean is the same; what is missing is what so few samples have
 /// not found.
 [[nodiscard]] MissingLight unseen_light(const PreparedScene& scene, const RenderSettings& settings,
-                                        std::uint64_t probes);
+                                        std::uint64_t probes, const std::stop_token& stop = {});
 
 /// Both as notices: "truncated_paths" where the limit may cost a thousandth of the light, and
 /// "unseen_light" where paths alone miss light by more than 3 standard errors, with what `3/n` of the
 /// brightest emitter can still add. Precondition: settings_error() is nothing.
 [[nodiscard]] std::vector<RenderNotice> missing_light_notices(const PreparedScene& scene,
-                                                              const RenderSettings& settings);
+                                                              const RenderSettings& settings,
+                                                              const std::stop_token& stop = {});
 
 }  // namespace raykiln::render

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "raykiln/scene/scene.hpp"
@@ -16,8 +17,11 @@ namespace raykiln::render {
 class EmitterTree {
  public:
   /// `triangles`: ascending, of area above 0; `weights`: of the emission of each material, W sr^-1 m^-2.
-  EmitterTree(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-              std::span<const double> weights, std::span<const Material> materials);
+  EmitterTree(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::span<const double> weights,
+              std::span<const Material> materials, const std::stop_token& stop = {});
+
+  /// False: stop was requested before, and there is nothing to sample.
+  [[nodiscard]] bool whole() const { return tree_.size() == emitters_.size(); }
 
   struct Draw {
     std::uint32_t triangle = 0;  ///< of the mesh

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/shading/emitter_choice.hpp"
 #include "raykiln/shading/emitter_tree.hpp"
+#include "raykiln/shading/made_once.hpp"
 #include "raykiln/shading/surface_point.hpp"
 
 namespace raykiln::render {
@@ -88,12 +88,14 @@ class Emitters {
     return tree(scene).pdf_area(receiver, triangle);
   }
 
-  /// The tree itself. Precondition: has_triangles().
+  /// The tree itself, made on the first demand. Precondition: has_triangles().
   [[nodiscard]] const EmitterTree& tree(const Scene& scene) const;
+  /// Makes it, if no one has. False once stop is requested. Precondition: has_triangles().
+  bool make_tree(const Scene& scene, const std::stop_token& stop) const;
 
  private:
   struct TreeOnDemand {
-    std::once_flag built;
+    MadeOnce made;
     std::optional<EmitterTree> tree;
   };
 

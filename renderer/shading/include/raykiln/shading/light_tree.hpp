@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "raykiln/math/ray.hpp"
@@ -42,8 +43,8 @@ struct LightTreeDraw {
 class LightTree {
  public:
   LightTree() = default;
-  /// O(n log n). Precondition: fewer than 2^31 emitters.
-  explicit LightTree(std::span<const EmitterBounds> emitters);
+  /// O(n log n). Empty where stop was requested before it was whole. Precondition: fewer than 2^31 emitters.
+  explicit LightTree(std::span<const EmitterBounds> emitters, const std::stop_token& stop = {});
 
   /// Draws by u in [0, 1), which is used up. Nothing where no emitter can light the receiver.
   [[nodiscard]] std::optional<LightTreeDraw> sample(const EmitterReceiver& receiver, double u) const;

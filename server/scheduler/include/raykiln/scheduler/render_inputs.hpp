@@ -1,6 +1,8 @@
 // From a job's request to what the renderer takes.
 #pragma once
 
+#include <stop_token>
+
 #include "raykiln/base/result.hpp"
 #include "raykiln/jobs/job_request.hpp"
 #include "raykiln/jobs/job_snapshot.hpp"
@@ -36,8 +38,9 @@ void warn_of_picture(const render::RenderSettings& settings, const render::Scene
                      const render::BuildStats& tree, std::vector<JobWarning>& warnings);
 
 /// Adds light that no number of samples brings, with its size ("truncated_paths" at "/max_depth",
-/// "unseen_light" at "/emitter_sampling"), from a pilot of some ten milliseconds; none for default settings.
+/// "unseen_light" at "/emitter_sampling"), from a pilot of some ten milliseconds; none for default settings, or
+/// where stop is requested while what paths need of the scene is made for it.
 void warn_of_missing_light(const render::RenderSettings& settings, const render::PreparedScene& scene,
-                           std::vector<JobWarning>& warnings);
+                           std::vector<JobWarning>& warnings, const std::stop_token& stop = {});
 
 }  // namespace raykiln::server
