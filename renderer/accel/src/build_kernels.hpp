@@ -34,18 +34,17 @@ struct CountingQuery {
   float leaf;               ///< planes that cost more for certain are left out
 };
 
-/// A plane that may be the cheapest. Triangles in the plane are counted on neither side.
+/// A plane that may be the cheapest, with the triangles before it, behind it and in it.
 struct CountedPlane {
-  float position, least;    ///< no choice for the triangles in the plane makes it cheaper
-  std::uint32_t n_left, n_right, axis;
+  float position, least;    ///< on either side of it those in the plane cost as much or more
+  std::uint32_t n_left, n_right, n_planar, axis;
 };
 inline constexpr std::size_t kMostCountedPlanes = 3 * 2 * kCountingMax;
 
 struct CountedPlanes {
   CountedPlane* planes;
   std::size_t size;
-  std::uint32_t planar_axes;  ///< a bit for each axis where a triangle may lie in a plane
-  std::uint32_t full_axes;    ///< how many needed all their planes counted
+  std::uint32_t full_axes;  ///< how many needed all their planes counted
 };
 
 /// Positions in a cell to bins: see BinGrid.

@@ -25,19 +25,13 @@ CountingQuery query_of(std::span<const Reference> references, const SweepInput& 
   return query;
 }
 
-std::uint32_t planars_at(std::span<const Reference> references, std::size_t axis, float p) {
-  std::uint32_t planars = 0;
-  for (const Reference& r : references) planars += r.lo[axis] >= p && r.hi[axis] <= p ? 1U : 0U;
-  return planars;
-}
-
 }  // namespace
 
 SweepResult search_by_counting(const BuildContext& context, std::span<const Reference> references,
                                const SweepInput& input, double leaf_cost, BuildStats& counts) {
   const std::uint64_t n = references.size();
   std::array<CountedPlane, kMostCountedPlanes> planes;
-  CountedPlanes found{planes.data(), 0, 0, 0};
+  CountedPlanes found{planes.data(), 0, 0};
   const CountingQuery query = query_of(references, input, leaf_cost, context.params);
   context.kernels.count_planes(query, found);
   counts.events_swept += 6 * n;
@@ -55,12 +49,9 @@ SweepResult search_by_counting(const BuildContext& context, std::span<const Refe
       axis = plane.axis;
       chooser.emplace(static_cast<int>(axis), input, context.params);
     }
-    const std::uint32_t planars = (found.planar_axes >> axis & 1U) != 0
-                                      ? planars_at(references, axis, plane.position)
-                                      : 0;
-    chooser->consider(plane.position, plane.n_left + planars, plane.n_right, true);
-    if (planars > 0) {
-      chooser->consider(plane.position, plane.n_left, plane.n_right + planars, false);
+    chooser->consider(plane.position, plane.n_left + plane.n_planar, plane.n_right, true);
+    if (plane.n_planar > 0) {
+      chooser->consider(plane.position, plane.n_left, plane.n_right + plane.n_planar, false);
     }
     least = std::min(least, chooser->result().best.cost);
   }

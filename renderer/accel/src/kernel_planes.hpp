@@ -10,6 +10,7 @@ namespace {
 struct PlanesOfAxis {
   float position[2 * kCountingMax + 2 * kLanes];
   std::int32_t n_left[2 * kCountingMax + 2 * kLanes], n_right[2 * kCountingMax + 2 * kLanes];
+  std::int32_t n_planar[2 * kCountingMax + 2 * kLanes];
   float least[2 * kCountingMax + 2 * kLanes];
   std::uint32_t size;
   bool planar;
@@ -28,7 +29,6 @@ inline void take_planes(const CountingQuery& q, std::uint32_t axis, PlanesOfAxis
   for (std::uint32_t i = 2 * q.n; i < to.size; ++i) to.position[i] = q.cell_lo[axis];
 }
 
-/// Least cost of planes; triangles in the plane are on no side.
 inline Floats rough_cost(const CountingQuery& q, std::uint32_t axis, const Floats& p, const Ints& n_left,
                          const Ints& n_right) {
   const RoughCost& c = q.cost[axis];
@@ -41,6 +41,7 @@ inline Floats rough_cost(const CountingQuery& q, std::uint32_t axis, const Float
 
 /// Fills counts and costs; gives a cost that the cheapest plane does not exceed. Costs of planes that
 /// are none, in the cell's faces, are infinite.
+template <bool kPlanar>
 inline float count_sides(const CountingQuery& q, std::uint32_t axis, PlanesOfAxis& planes) {
   const std::uint32_t n = q.n;
   const float* const lows = planes.position;
@@ -49,34 +50,49 @@ inline float count_sides(const CountingQuery& q, std::uint32_t axis, PlanesOfAxi
   for (std::uint32_t at = 0; at < planes.size; at += 2 * kLanes) {
     const Floats p0 = lanes_at<Floats>(planes.position + at);
     const Floats p1 = lanes_at<Floats>(planes.position + at + kLanes);
-    Ints left0{}, left1{}, right0{}, right1{};
+    Ints left0{}, left1{}, right0{}, right1{}, both0{}, both1{};
     for (std::uint32_t i = 0; i < n; ++i) {
       const Floats lo = all_of(lows[i]);
       const Floats hi = all_of(highs[i]);
-      left0 -= lo < p0;
-      left1 -= lo < p1;
-      right0 -= hi > p0;
-      right1 -= hi > p1;
+      const Ints before0 = lo < p0, before1 = lo < p1, behind0 = hi > p0, behind1 = hi > p1;
+      left0 -= before0;
+      left1 -= before1;
+      right0 -= behind0;
+      right1 -= behind1;
+      if (kPlanar) {
+        both0 -= before0 & behind0;
+        both1 -= before1 & behind1;
+      }
     }
-    const auto keep = [&](std::uint32_t to, const Floats& p, const Ints& n_left, const Ints& n_right) {
+    const auto keep = [&](std::uint32_t to, const Floats& p, const Ints& n_left, const Ints& n_right,
+                          const Ints& n_both) {
       const Ints inside = (p > q.cell_lo[axis]) & (p < q.cell_hi[axis]);
-      Floats cost = q.cost[axis].usable ? rough_cost(q, axis, p, n_left, n_right) : Floats{};
+      const Ints n_planar = kPlanar ? static_cast<std::int32_t>(n) - n_left - n_right + n_both : Ints{};
+      Floats cost{};
+      if (q.cost[axis].usable) {
+        cost = rough_cost(q, axis, p, n_left + n_planar, n_right);
+        if (kPlanar) {
+          const Floats other = rough_cost(q, axis, p, n_left, n_right + n_planar);
+          cost = other < cost ? other : cost;
+        }
+      }
       cost = inside ? cost : all_of(kInfinite);
+      __builtin_memcpy(planes.n_planar + to, &n_planar, sizeof n_planar);
       __builtin_memcpy(planes.n_left + to, &n_left, sizeof n_left);
       __builtin_memcpy(planes.n_right + to, &n_right, sizeof n_right);
       __builtin_memcpy(planes.least + to, &cost, sizeof cost);
-      cost = n_left + n_right <= q.affordable ? cost : all_of(kInfinite);
+      cost = n_left + n_right + n_planar <= q.affordable ? cost : all_of(kInfinite);
       least = cost < least ? cost : least;
     };
-    keep(at, p0, left0, right0);
-    keep(at + kLanes, p1, left1, right1);
+    keep(at, p0, left0, right0, both0);
+    keep(at + kLanes, p1, left1, right1, both1);
   }
-  return planes.planar || !q.cost[axis].usable ? kInfinite : lowest(least);
+  return q.cost[axis].usable ? lowest(least) : kInfinite;
 }
 
 inline void add_plane(CountedPlanes& result, std::uint32_t axis, float position, float least,
-                      std::uint32_t n_left, std::uint32_t n_right) {
-  result.planes[result.size++] = {position, least, n_left, n_right, axis};
+                      std::uint32_t n_left, std::uint32_t n_right, std::uint32_t n_planar) {
+  result.planes[result.size++] = {position, least, n_left, n_right, n_planar, axis};
 }
 
 /// The only planes with an empty side are those before and behind all triangles.
@@ -85,12 +101,12 @@ inline void add_empty_cuts(const CountingQuery& q, std::uint32_t axis, float fir
   if (q.cell_lo[axis] < first && first < q.cell_hi[axis]) {
     std::uint32_t n_right = 0;
     for (std::uint32_t i = 0; i < q.n; ++i) n_right += q.references[8 * i + 4 + axis] > first ? 1U : 0U;
-    add_plane(result, axis, first, 0.0F, 0, n_right);
+    add_plane(result, axis, first, 0.0F, 0, n_right, q.n - n_right);
   }
   if (q.cell_lo[axis] < last && last < q.cell_hi[axis] && last != first) {
     std::uint32_t n_left = 0;
     for (std::uint32_t i = 0; i < q.n; ++i) n_left += q.references[8 * i + axis] < last ? 1U : 0U;
-    add_plane(result, axis, last, 0.0F, n_left, 0);
+    add_plane(result, axis, last, 0.0F, n_left, 0, q.n - n_left);
   }
 }
 
@@ -102,7 +118,8 @@ inline void add_cheap_planes(const PlanesOfAxis& planes, std::uint32_t axis, flo
       if (!(planes.least[i] <= threshold)) continue;
       add_plane(result, axis, planes.position[i], planes.least[i],
                 static_cast<std::uint32_t>(planes.n_left[i]),
-                static_cast<std::uint32_t>(planes.n_right[i]));
+                static_cast<std::uint32_t>(planes.n_right[i]),
+                static_cast<std::uint32_t>(planes.n_planar[i]));
     }
   }
 }
@@ -114,7 +131,7 @@ void count_planes(const CountingQuery& q, CountedPlanes& result) {
   PlanesOfAxis planes[3];
   bool full[3];
   float threshold = q.leaf;
-  result.size = result.planar_axes = result.full_axes = 0;
+  result.size = result.full_axes = 0;
   typedef float Float4 __attribute__((vector_size(16)));
   Float4 first = lanes_at<Float4>(q.references);
   Float4 last = lanes_at<Float4>(q.references + 4);
@@ -131,16 +148,15 @@ void count_planes(const CountingQuery& q, CountedPlanes& result) {
     if (!full[axis]) continue;
     ++result.full_axes;
     take_planes(q, axis, planes[axis]);
-    const float cheapest = count_sides(q, axis, planes[axis]);
+    const float cheapest = planes[axis].planar ? count_sides<true>(q, axis, planes[axis])
+                                               : count_sides<false>(q, axis, planes[axis]);
     threshold = cheapest < threshold ? cheapest : threshold;
   }
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     if (!full[axis]) {
-      result.planar_axes |= 1U << axis;  // not known
       add_empty_cuts(q, axis, first[axis], last[axis], result);
       continue;
     }
-    result.planar_axes |= planes[axis].planar ? 1U << axis : 0U;
     // What is cancelled in 1 - part is a share of side N, which may be more than the cost.
     const RoughCost& c = q.cost[axis];
     const float slack = 1e-6F * (c.cap + c.side) * static_cast<float>(q.n);
