@@ -1,6 +1,7 @@
 """Server-sent events: snapshots, order, the final state, readers that are slow or many."""
 
 import json
+import statistics
 import threading
 import time
 
@@ -113,14 +114,17 @@ def test_memory_of_many_readers_is_bounded(launch):
     before = steady_kib(api, job)
     streams = few + readers_of(api, job, count)
     after = steady_kib(api, job)
-    # What grows without a reader grows in every turn.
-    growth = least_of_turns(lambda: -peak_kib(api, job) + peak_kib(api, job), promised=8192)
+    # What grows without end grows in most turns. A turn may meet with the allocator, or with a program that took the time from
+    # this one; the median does not see it, but it sees half a kilobyte a reader and revision.
+    turns, revisions = 5, 6
+    peaks = [peak_kib(api, job, revisions) for _ in range(turns + 1)]
+    growth = statistics.median(later - earlier for earlier, later in zip(peaks, peaks[1:]))
+    assert (after - before) / count <= 64, f"{(after - before) / count:.0f} KiB a client"
+    assert growth <= count * revisions / 2, f"grows by {growth} KiB in {revisions} revisions: {peaks}"
     api.cancel(job)
     for stream in streams:
         assert stream.last().data["state"] == "cancelled"
         stream.close()
-    assert (after - before) / count <= 64, f"{(after - before) / count:.0f} KiB a client"
-    assert growth <= 8192, f"grows by {growth} KiB a turn without a reader"
 
 
 def readers_of(api, job, count):
