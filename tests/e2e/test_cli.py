@@ -142,6 +142,19 @@ def cancelled(api, folder, to):
     return raykiln("watch", job, *to)
 
 
+def test_a_server_s_job_is_told_of_like_one_rendered_here(api, folder, to, tmp_path):
+    """Error, interval and what to mind, in the same line, unless --quiet."""
+    options = ("--samples", 8, "--size", "24x16")
+    here = raykiln("render", folder / "box.obj", "-o", tmp_path / "a.exr", *options).stderr
+    there = raykiln("submit", folder, *to, *options, "--wait")
+    assert there.returncode == 0, there.stderr
+    line = [text for text in here.splitlines() if text.startswith("error ")]
+    assert len(line) == 1 and "fewer than 64 samples" in line[0] and "--samples" in line[0], here
+    assert line == [text for text in there.stderr.splitlines() if text.startswith("error ")]
+    quiet = raykiln("watch", there.stdout.split()[-1], *to, "--quiet")
+    assert quiet.returncode == 0 and quiet.stderr == ""
+
+
 def test_json_output_is_the_contract(api, folder, to):
     submitted = raykiln("submit", folder, *to, "--samples", 2, "--size", "24x16", "--wait", "--json")
     assert submitted.returncode == 0, submitted.stderr

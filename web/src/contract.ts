@@ -98,7 +98,7 @@ export interface Accuracy {
   grade: "unknown" | "rough" | "measured";
   error: Figure | null;
   heavy_tailed: boolean;
-  notices: string[];
+  remarks: string[];
   least_samples: number;
   target: number | null;
   target_reached: boolean | null;

@@ -111,12 +111,15 @@ Json accuracy_value(const JobSnapshot& job) {
   const PictureError& a = *job.accuracy;
   const auto if_known = [&](const ErrorFigure& figure) { return a.known() ? figure_value(figure) : Json(nullptr); };
   const auto& target = job.request.stop.error;
+  Json remarks = Json::array();
+  for (const std::string& notice : a.notices) remarks.push_back(remark(notice));
   return {{"grade", a.grade},
           {"error", if_known(a.error)},
           {"rmse", if_known(a.rmse)},
           {"display_rmse", if_known(a.display_rmse)},
           {"heavy_tailed", a.heavy_tailed},
           {"notices", a.notices},
+          {"remarks", std::move(remarks)},
           {"least_samples", a.least_samples},
           {"target", value_or_null(target)},
           {"target_reached", target ? Json(target_met(job.request.stop, a)) : Json(nullptr)}};

@@ -9,6 +9,24 @@ namespace {
 
 using nlohmann::json;
 
+PictureError error_of(const json& accuracy, double samples) {
+  PictureError view;
+  view.grade = accuracy.at("grade").get<std::string>();
+  if (const json& error = accuracy.at("error"); error.is_object()) {
+    view.error = {error.at("value").get<double>(), error.at("low").get<double>(), error.at("high").get<double>()};
+  } else {
+    view.grade = PictureError().grade;  // no figure, so nothing is known
+  }
+  view.notices = accuracy.at("notices").get<std::vector<std::string>>();
+  view.mean_samples = samples;
+  return view;
+}
+
+std::string warning_text(const json& warning) {
+  const auto where = warning.at("where").get<std::string>();
+  return warning.at("message").get<std::string>() + (where.empty() ? "" : " (" + where + ')');
+}
+
 /// Throws json::exception when something that a job must have is missing.
 JobView view_of(const json& job) {
   JobView view;
@@ -32,9 +50,12 @@ JobView view_of(const json& job) {
   }
   view.render_seconds = job.at("statistics").at("render_seconds").get<double>();
   if (const json& accuracy = job.at("accuracy"); accuracy.is_object()) {
-    if (const json& error = accuracy.at("error"); error.is_object()) view.error_reached = error.at("value").get<double>();
+    view.accuracy = error_of(accuracy, view.samples_done);
+    if (const json& target = accuracy.at("target"); target.is_number()) view.target = target.get<double>();
     view.target_reached = accuracy.at("target_reached") == true;
   }
+  if (const json& by = job.at("done_by"); by.is_string()) view.done_by = done_by_named(by.get<std::string>());
+  for (const json& warning : job.at("warnings")) view.warnings.push_back(warning_text(warning));
   view.has_image = !job.at("image").is_null();
   if (const json& prepare = job.at("prepare"); prepare.is_object()) {
     view.stage = prepare.at("stage").get<std::string>();

@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "accuracy_line.hpp"
 #include "raykiln/api/percent.hpp"
 #include "raykiln/api/scene_json.hpp"
 #include "remote.hpp"
@@ -13,6 +14,13 @@ namespace raykiln::server {
 namespace {
 
 bool on_terminal() { return isatty(STDERR_FILENO) != 0; }
+
+/// Text in a column; what a stranger named may hold anything, so that controls are left out.
+std::string clean(const std::string& text) {
+  std::string out;
+  for (const char c : text) out.push_back(static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c);
+  return out;
+}
 
 /// Follows, prints the outcome, and fetches the pictures that are asked for.
 ExitCode see_through(Remote& remote, const CliOptions& options, const std::string& job) {
@@ -24,6 +32,10 @@ ExitCode see_through(Remote& remote, const CliOptions& options, const std::strin
   const auto outcome = exit_code_for_state(end->state);
   if (options.json) std::cout << json << '\n';
   else if (!options.quiet) std::cerr << "job " << job << ' ' << end->state << '\n';
+  if (!options.quiet) {
+    for (const std::string& warning : end->warnings) std::cerr << "warning: " << clean(warning) << '\n';
+    if (end->accuracy) std::cerr << accuracy_line(*end) << '\n';
+  }
   if (!end->approximation.empty()) {
     std::cerr << "warning: deliberate approximation: effects " << end->approximation << '\n';
   }
@@ -33,13 +45,6 @@ ExitCode see_through(Remote& remote, const CliOptions& options, const std::strin
     if (fetched != ExitCode::kOk && outcome == ExitCode::kOk) return fetched;
   }
   return outcome;
-}
-
-/// Text in a column; what a stranger named may hold anything, so that controls are left out.
-std::string clean(const std::string& text) {
-  std::string out;
-  for (const char c : text) out.push_back(static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c);
-  return out;
 }
 
 /// A job that was created: followed to its end where that is asked for, else its id is printed.

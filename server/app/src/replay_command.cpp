@@ -49,6 +49,10 @@ bool names_a_job(const CliOptions& options) {
   return text.starts_with("j_") && is_plain_id(text, 64) && !std::filesystem::exists(text, ignored);
 }
 
+bool has_code(const ClientResponse& problem, const std::string& code) {
+  return problem.body.find('"' + code + '"') != std::string::npos;
+}
+
 /// The sample as the job's server renders it.
 ExitCode replay_of_job(const CliOptions& options) {
   auto remote = Remote::open(options);
@@ -59,13 +63,13 @@ ExitCode replay_of_job(const CliOptions& options) {
                              "&sample=" + std::to_string(at.sample);
   for (int attempt = 0;; ++attempt) {
     auto answer = HttpClient(remote->address()).request("GET", target);
-    if (answer && answer->status == 503 && attempt < kMostWaits &&
-        answer->body.find("\"scene_not_ready\"") != std::string::npos) {
+    if (answer && answer->status == 503 && attempt < kMostWaits && has_code(*answer, "scene_not_ready")) {
       std::this_thread::sleep_for(std::chrono::seconds(1));  // it reads the scene, builds its tree
       continue;
     }
+    const bool too_large = answer && answer->status >= 400 && has_code(*answer, "tree_too_large");
     const auto response = remote->check(std::move(answer));
-    if (!response) return remote->failure();
+    if (!response) return too_large ? ExitCode::kJobFailed : remote->failure();  // as it is without a server
     const auto sample = parse_replay(response->body);
     if (!sample) return remote->fail(ExitCode::kFailure, "the server's answer is no sample");
     print(*sample, options.json);

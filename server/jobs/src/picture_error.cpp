@@ -1,8 +1,44 @@
 #include "raykiln/jobs/picture_error.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace raykiln::server {
+namespace {
+
+struct Notice {
+  std::string_view code, words;
+  bool more_samples = false;
+};
+
+/// By the codes of the contract (Accuracy.notices).
+constexpr Notice kNotices[] = {
+    {"unsampled_pixels", "some pixels have no sample: allow more", true},
+    {"error_unknown", "too few samples to judge: allow 64 a pixel or more", true},
+    {"error_rough", "fewer than 64 samples in a pixel, so the interval may be too narrow: allow more", true},
+    {"error_sampled", "judged on a part of the pixels; all of them are when the job ends"},
+    {"heavy_tailed", "rare bright samples make up much of the noise, so the error may be larger: allow more", true},
+    {"no_variance", "no two samples differ: there is no noise, or light that no sample has found"},
+    {"aliasing_not_measured", "samples lie in the middle of their pixels, and aliasing is not measured"},
+    {"adaptive", "samples were placed where the error was, for which a small bias is possible"},
+};
+
+const Notice* known(std::string_view code) {
+  const auto* found = std::find_if(std::begin(kNotices), std::end(kNotices), [&](const Notice& n) { return n.code == code; });
+  return found == std::end(kNotices) ? nullptr : found;
+}
+
+}  // namespace
+
+std::string remark(std::string_view notice) {
+  const Notice* found = known(notice);
+  return std::string(found == nullptr ? notice : found->words);
+}
+
+bool wants_more_samples(std::string_view notice) {
+  const Notice* found = known(notice);
+  return found != nullptr && found->more_samples;
+}
 
 void add_point(std::vector<CurvePoint>& curve, const CurvePoint& point) {
   if (curve.size() >= kMostCurvePoints) {

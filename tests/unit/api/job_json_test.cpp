@@ -258,6 +258,33 @@ TEST(JobJson, IsReadBackByClients) {
   EXPECT_TRUE(view->error.empty());
 }
 
+TEST(JobJson, TellsClientsHowItEnded) {
+  auto job = snapshot();
+  EXPECT_FALSE(parse_job_view(job_json(job))->accuracy);
+  job.done_by = DoneBy::kSeconds;
+  job.request.stop.error = 0.01;
+  job.warnings = {{"code", "what", "where"}, {"code", "what else", ""}};
+  job.accuracy.emplace();
+  job.accuracy->notices = {"heavy_tailed", "of_tomorrow"};
+  auto view = parse_job_view(job_json(job));
+  ASSERT_TRUE(view && view->accuracy);
+  EXPECT_FALSE(view->accuracy->known());
+  job.accuracy->grade = "measured";
+  job.accuracy->error = {0.02, 0.01, 0.03};
+  view = parse_job_view(job_json(job));
+  EXPECT_TRUE(view->accuracy->known());
+  EXPECT_EQ(view->accuracy->error.high, 0.03);
+  EXPECT_EQ(view->accuracy->notices, job.accuracy->notices);
+  EXPECT_EQ(view->done_by, DoneBy::kSeconds);
+  EXPECT_EQ(view->target, 0.01);
+  EXPECT_FALSE(view->target_reached);
+  EXPECT_EQ(view->warnings, (std::vector<std::string>{"what (where)", "what else"}));
+  const auto remarks = json::parse(job_json(job))["accuracy"]["remarks"];
+  ASSERT_EQ(remarks.size(), 2U);
+  EXPECT_EQ(remarks[0], remark("heavy_tailed"));
+  EXPECT_EQ(remarks[1], "of_tomorrow");
+}
+
 TEST(JobJson, FollowsTheContract) {
   auto job = snapshot();
   auto value = json::parse(job_json(job));

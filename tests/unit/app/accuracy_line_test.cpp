@@ -49,5 +49,21 @@ TEST(AccuracyLine, NoticesAreWords) {
   EXPECT_TRUE(accuracy_line(judged(DoneBy::kSamples, {"of_tomorrow"})).ends_with("; of_tomorrow"));
 }
 
+/// A server's job reads as one that was rendered here.
+TEST(AccuracyLine, IsTheSameOfAServersJob) {
+  EXPECT_EQ(accuracy_line(JobView{}), "");
+  const JobSnapshot job = judged(DoneBy::kSeconds, {"error_rough", "adaptive"});
+  JobView view;
+  view.accuracy = job.accuracy;
+  view.done_by = job.done_by;
+  EXPECT_EQ(accuracy_line(view), accuracy_line(job));
+  JobSnapshot missed = job;
+  missed.request.stop.error = view.target = 0.01;
+  EXPECT_EQ(accuracy_line(view), accuracy_line(missed));
+  EXPECT_NE(accuracy_line(view).find("target of 1 % not reached"), std::string::npos);
+  view.target_reached = true;
+  EXPECT_EQ(accuracy_line(view), accuracy_line(job));
+}
+
 }  // namespace
 }  // namespace raykiln::server

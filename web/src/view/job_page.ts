@@ -280,21 +280,10 @@ function accuracy_rows(job: Job): [string, string][] {
     const reached = accuracy.target_reached ? "reached" : is_final(job.state) ? "not reached" : "not yet";
     rows.push(["Target", `${error_percent(accuracy.target)}, ${reached}`]);
   }
-  if (accuracy.notices.length > 0) rows.push(["Mind", accuracy.notices.map((code) => kNotices[code] ?? label_of(code)).join("; ")]);
+  if (accuracy.remarks.length > 0) rows.push(["Mind", accuracy.remarks.join("; ")]);
   if (job.done_by) rows.push(["Ended by", kStopNames[job.done_by]]);
   return rows;
 }
-
-const kNotices: Record<string, string> = {
-  heavy_tailed: "rare bright samples: the error is larger than shown",
-  no_variance: "no two samples differ: no noise, or light that was never found",
-  error_rough: "fewer than 64 samples: intervals may be too narrow",
-  error_sampled: "judged on a sample of the pixels, in full when the job ends",
-  adaptive: "samples were placed where the error was: a small bias is possible",
-  error_unknown: "too few samples to judge",
-  unsampled_pixels: "some pixels have no sample",
-  aliasing_not_measured: "aliasing is not measured",
-};
 
 const kElsewhere = ["rays_per_second", "rays"];
 

@@ -211,7 +211,7 @@ class RemoteBatch {
     if (!view) return remote_.fail(ExitCode::kFailure, "the server's answer is no job");
     picture.seconds = picture.reused ? 0.0 : view->render_seconds;
     picture.samples = view->samples_done;
-    picture.error_reached = view->error_reached;
+    if (view->accuracy && view->accuracy->known()) picture.error_reached = view->accuracy->error.value;
     picture.limit_reached = planned.request.stop.error && !view->target_reached;
     if (planned.reference.empty() && wanted_.html.empty()) {
       picture.state = PictureState::kCompleted;

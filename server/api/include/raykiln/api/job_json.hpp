@@ -57,8 +57,11 @@ struct JobView {
   double rays_per_second = 0.0;
   std::string approximation;  ///< empty, or the label of effects that lack what the scene calls for
   double render_seconds = 0.0;
-  std::optional<double> error_reached;  ///< of the picture, relative; as last judged
-  bool target_reached = false;          ///< an error target that was met
+  std::optional<PictureError> accuracy;  ///< as last judged; its grade, error, notices and samples
+  DoneBy done_by = DoneBy::kNone;
+  std::optional<double> target;  ///< of error
+  bool target_reached = false;   ///< an error target that was met
+  std::vector<std::string> warnings;  ///< "message (where)"
   bool has_image = false;
   std::string error;  ///< empty, or "code: detail (where)"
 };

@@ -25,6 +25,11 @@ struct PictureError {
   [[nodiscard]] bool known() const { return grade != "unknown"; }
 };
 
+/// A notice in words, with what can be done about it; its own code where that is not known here.
+[[nodiscard]] std::string remark(std::string_view notice);
+/// Whether more samples are what can be done about it.
+[[nodiscard]] bool wants_more_samples(std::string_view notice);
+
 /// One point of error against time.
 struct CurvePoint {
   double render_seconds = 0.0;  ///< wall time in `rendering`
