@@ -10,12 +10,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 BIN = Path(os.environ.get("RAYKILN_BIN_DIR", ROOT / "build" / "test" / "bin"))
 # Sanitized builds run many times slower; limits on time stretch by this factor.
-SLOW = float(os.environ.get("RAYKILN_SLOW", "1"))
+SLOW = float(os.environ.get("RAYKILN_SLOW", "1"))  # what patience is multiplied by
+COST = float(os.environ.get("RAYKILN_COST", "1"))  # what a sample costs beside an ordinary build's
 
 
 def fewer(samples: int) -> int:
     """Samples a pixel, at least 2, that keep a sanitized build busy for as long as `samples` do another."""
-    return max(2, round(samples / SLOW))
+    return max(2, round(samples / COST))
 
 
 _LISTENING = re.compile(r"http://127\.0\.0\.1:(\d+)")
