@@ -52,16 +52,17 @@ def own() -> float:
 class Raykiln:
     def __init__(self, program, folder, side, threads, sampler, timed):
         self.name, self.folder, self.target = f"raykiln {sampler}", folder, WORK / f"{sampler}.exr"
-        self.command = [program, "-q", "render", str(folder), "-o", str(self.target), "--size",
+        self.command = [program, "-q", "render", "--json", str(folder), "-o", str(self.target), "--size",
                         f"{side}x{side}", "--threads", str(threads), "--sampler", sampler]
         self.start, self.timed = None, timed
 
     def call(self, samples, seed):
         before = children()
-        subprocess.run([*self.command, "--samples", str(samples), "--seed", str(seed)], check=True)
-        bitmap = mi.Bitmap(str(self.target))
-        wall = float(bitmap.metadata()["raykiln:seconds"])
-        return np.array(bitmap)[..., :3].astype(float), children() - before, wall
+        done = subprocess.run([*self.command, "--samples", str(samples), "--seed", str(seed)], check=True,
+                              capture_output=True, text=True)
+        self.statistics = json.loads(done.stdout)["statistics"]
+        picture = np.array(mi.Bitmap(str(self.target)))[..., :3].astype(float)
+        return picture, children() - before, self.statistics["render_seconds"]
 
     def warm(self, samples):
         del samples
@@ -142,21 +143,26 @@ def line(name, result) -> str:
 
 
 def efficiency(options) -> list:
-    """Seconds for a million samples of raykiln alone, at one thread and at two."""
-    lines = ["| scene | processor s a million samples, 1 thread | 2 threads | wall s, 1 thread | 2 threads | efficiency by wall | by processor time |",
-             "|---|---|---|---|---|---|---|"]
+    """Seconds for a million samples of raykiln alone, at one thread and at two, and where one thread spends them."""
+    lines = ["| scene | processor s a million samples, 1 thread | 2 threads | wall s, 1 thread | 2 threads | efficiency by wall | by processor time "
+             "| traversal | shading | rest |", "|---|" + "---|" * 9]
     folders = {"demo": ROOT / "server/app/demo"} | {
         name: WORK / name.split(",")[0].replace(" ", "_") for name in SCENES if name in options.done}
     for name, folder in folders.items():
-        found = {}
+        found, shares = {}, []
         for threads in (1, 2, 1, 2):
             render = Raykiln(str(Path(options.bin) / "raykiln"), folder, options.side, threads, "random", 32)
             render.warm(1)
             _, cpu, wall = render.render(32, 5)
+            if threads == 1:
+                spent = render.statistics
+                shares.append([spent[f"{part}_seconds"] / spent["worker_seconds"] for part in ("traversal", "shading")])
             scale = 1e6 / (32 * options.side**2)
             found.setdefault(threads, []).append((cpu * scale, wall * scale))
         (c1, w1), (c2, w2) = (np.min(found[t], 0) for t in (1, 2))
-        lines.append(f"| {name} | {c1:.2f} | {c2:.2f} | {w1:.2f} | {w2:.2f} | {w1 / (2 * w2):.2f} | {c1 / c2:.2f} |")
+        walk, shade = np.mean(shares, 0)
+        lines.append(f"| {name} | {c1:.2f} | {c2:.2f} | {w1:.2f} | {w2:.2f} | {w1 / (2 * w2):.2f} | {c1 / c2:.2f} "
+                     f"| {walk:.0%} | {shade:.0%} | {1 - walk - shade:.0%} |")
         print(lines[-1], flush=True)
     return lines
 
