@@ -37,7 +37,18 @@ struct FilterValues {
   typename V::F z[3];
 };
 
-/// A bit for each triangle whose hit, if it is one, lies outside of the ray's interval for certain.
+/// What the filter finds of some triangles, a bit for each: `maybe` hit; `sure` of them.
+struct Found {
+  std::uint32_t maybe, sure;
+};
+
+/// outside: the hit of a triangle, if it is one, lies outside of the ray's interval for certain; inside: it
+/// lies within for certain.
+struct IntervalBits {
+  std::uint32_t outside, inside;
+};
+
+/// Compares with the ray's interval; `inside` is looked for if kSure.
 ///
 /// With e the error of an edge function, t_i = z_i / dz and R = max |t_i|, T = u t0 + v t1 + w t2 is
 /// off by 3 e R for the edge functions and by 7 u (|u| + |v| + |w|) R <= 42 u h^2 R <= 1.05 e R for its
@@ -45,9 +56,9 @@ struct FilterValues {
 /// exact t is below t_min when T - t_min D < -6 e (R + |t_min|) for positive D; the roundings of the
 /// product and of t itself are within that. The bound is formed so that it overflows where T or D
 /// does; what underflows (products, and t to zero) is covered by terms of their own.
-template <class V>
-inline std::uint32_t outside_interval(const FilterRay<V>& ray, const FilterValues<V>& f,
-                                      typename V::F e) {
+template <class V, bool kSure>
+inline IntervalBits compare_interval(const FilterRay<V>& ray, const FilterValues<V>& f,
+                                     typename V::F e) {
   using F = typename V::F;
   const F sum = V::add(V::add(f.u, f.v), f.w);
   const F size = V::abs(sum);
@@ -64,10 +75,19 @@ inline std::uint32_t outside_interval(const FilterRay<V>& ray, const FilterValue
     const F underflow = V::mul_add(g, V::set1(kVanishingProduct), vanished);
     return V::mul_add(V::mul(mh8, g), V::set1(0.75F * kFilterEdge), underflow);
   };
-  const auto before = V::lt(depth, V::mul_sub(ray.t_min, size, error(ray.t_min)));
-  const auto beyond = V::lt(V::mul_add(ray.t_max, size, error(ray.t_max)), depth);
+  const F near = error(ray.t_min);
+  const F far = error(ray.t_max);
+  const auto before = V::lt(depth, V::mul_sub(ray.t_min, size, near));
+  const auto beyond = V::lt(V::mul_add(ray.t_max, size, far), depth);
   const auto sure = V::lt(V::mul(e, V::set1(4.0F)), size);
-  return V::bits(V::both(sure, V::either(before, beyond)));
+  IntervalBits found{V::bits(V::both(sure, V::either(before, beyond))), 0};
+  if constexpr (kSure) {
+    // An infinite end gives NaN, and no certainty.
+    const auto after = V::lt(V::mul_add(ray.t_min, size, near), depth);
+    const auto until = V::lt(depth, V::mul_sub(ray.t_max, size, far));
+    found.inside = V::bits(V::both(sure, V::both(after, until)));
+  }
+  return found;
 }
 
 /// Sheared corners in the plane across the ray.
@@ -103,10 +123,18 @@ inline std::uint32_t edges_allow(const FilterValues<V>& f, typename V::F e) {
   return ~V::bits(missed) & ((1U << V::kWidth) - 1U);
 }
 
-/// A bit for each of V::kWidth triangles of a block of kLeafWidth that may be hit; `block` points to
-/// the first of them.
-template <class V, int kLeafWidth>
-inline std::uint32_t may_be_hit(const FilterRay<V>& ray, const float* block) {
+/// A bit for each triangle that is met for certain, its edge functions being off by e at most.
+template <class V>
+inline std::uint32_t edges_agree(const FilterValues<V>& f, typename V::F e) {
+  const auto least = V::min(V::min(f.u, f.v), f.w);
+  const auto most = V::max(V::max(f.u, f.v), f.w);
+  return V::bits(V::either(V::lt(e, least), V::lt(most, V::turn_sign(e, V::set1(-1.0F)))));
+}
+
+/// Of V::kWidth triangles of a block of kLeafWidth, of which `block` points to the first, those that may be
+/// hit; if kSure, also those that are, for certain.
+template <class V, int kLeafWidth, bool kSure>
+inline Found may_be_hit(const FilterRay<V>& ray, const float* block) {
   using F = typename V::F;
   FilterValues<V> f;
   const auto [x, y] = form_edges<V, kLeafWidth>(ray, block, f);
@@ -116,7 +144,9 @@ inline std::uint32_t may_be_hit(const FilterRay<V>& ray, const float* block) {
   f.mh = V::mul(m, V::mul_add(V::set1(kFilterCorner), m, h));
   const F e = V::mul_add(f.mh, V::set1(kFilterEdge), V::set1(kFilterUnderflow));
   const std::uint32_t lanes = edges_allow<V>(f, e);
-  return lanes == 0 ? 0 : lanes & ~outside_interval<V>(ray, f, e);
+  if (lanes == 0) return {0, 0};
+  const IntervalBits interval = compare_interval<V, kSure>(ray, f, e);
+  return {lanes & ~interval.outside, kSure ? interval.inside & edges_agree<V>(f, e) : 0};
 }
 
 /// The e of may_be_hit at most, where no coordinate of a corner is farther than `reach` from that of

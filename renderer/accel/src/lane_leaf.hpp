@@ -84,9 +84,9 @@ class LeafVisit {
         for (; b + 1 < count; b += 2) {
           const auto both = candidates<Twice>(ray, first + kBlockFloats * b, rays.known[lane]);
           ++counts_.block_tests;
-          if (decide(rays, lane, index, place + b, both & 0xFFU)) return true;
+          if (decide(rays, lane, index, place + b, {both.maybe & 0xFFU, both.sure & 0xFFU})) return true;
           ++counts_.block_tests;
-          if (decide(rays, lane, index, place + b + 1, both >> 8)) return true;
+          if (decide(rays, lane, index, place + b + 1, {both.maybe >> 8, both.sure >> 8})) return true;
         }
       }
       if (b == count) return false;
@@ -95,9 +95,11 @@ class LeafVisit {
     for (; b < count; ++b) {
       ++counts_.block_tests;
       const float* const block = first + kBlockFloats * b;
-      std::uint32_t found = 0;
+      Found found{0, 0};
       for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
-        found |= candidates<B>(ray, block + at, rays.known[lane]) << at;
+        const Found part = candidates<B>(ray, block + at, rays.known[lane]);
+        found.maybe |= part.maybe << at;
+        found.sure |= part.sure << at;
       }
       if (decide(rays, lane, index, place + b, found)) return true;
     }
@@ -151,8 +153,17 @@ class LeafVisit {
     FilterRay<R> ray = filter_rays<R>(rays, axis);
     std::uint32_t done = 0;
     for (std::uint32_t i = 0; i < kLeafWidth && ids[i] != kLaneNoHit; ++i) {
-      std::uint32_t found = may_be_hit<R, kLeafWidth>(ray, block + i) & lanes & ~done;
+      const Found filtered = may_be_hit<R, kLeafWidth, kAnyHit>(ray, block + i);
+      std::uint32_t found = filtered.maybe & lanes & ~done;
       if (found == 0) continue;
+      if constexpr (kAnyHit) {
+        const std::uint32_t sure = found & filtered.sure;
+        for (std::uint32_t rest = sure; rest != 0; rest &= rest - 1) {
+          const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+          if (stopped(rays.index[lane], ids[i])) done |= 1U << lane;
+        }
+        if ((found &= ~sure) == 0) continue;
+      }
       found &= ~V::bits(V::eq(V::load(rays.known), V::set1(ids[i])));
       done |= decide_rays(rays, found, axis, place, i);
       ray.t_max = V::load(rays.t_max);
@@ -193,9 +204,20 @@ class LeafVisit {
   }
 
   // The last word on the candidates of a block for one ray. True when it is done.
-  bool decide(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
-              std::uint32_t found) const {
-    return found != 0 && decide_found(rays, lane, index, place, found);
+  bool decide(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place, Found found) const {
+    if constexpr (kAnyHit) {
+      const float* const block = query_.blocks + kBlockFloats * place;
+      for (std::uint32_t rest = found.maybe & found.sure; rest != 0; rest &= rest - 1) {
+        if (stopped(index, id_of(block + __builtin_ctz(rest)))) return true;
+      }
+      found.maybe &= ~found.sure;
+    }
+    return found.maybe != 0 && decide_found(rays, lane, index, place, found.maybe);
+  }
+
+  // Whether triangle `id`, which is hit for certain, ends an any-hit ray: where it is does not matter.
+  bool stopped(std::size_t index, std::uint32_t id) const {
+    return query_.keep(query_.context, index, 0.0F, id, 0.0F, 0.0F).id != kLaneNoHit;
   }
 
   [[gnu::noinline]] bool decide_found(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
@@ -278,11 +300,11 @@ class LeafVisit {
 
   // Those of a block, or of the part of it that begins at `block`, that have to be decided.
   template <class L>
-  static std::uint32_t candidates(const FilterRay<L>& ray, const float* block,
-                                  std::uint32_t known) {
-    const std::uint32_t lanes = may_be_hit<L, kLeafWidth>(ray, block);
-    if (lanes == 0) return 0;
-    return lanes & worth_deciding<L>(reinterpret_cast<const std::uint32_t*>(block + kIds), known);
+  static Found candidates(const FilterRay<L>& ray, const float* block, std::uint32_t known) {
+    Found found = may_be_hit<L, kLeafWidth, kAnyHit>(ray, block);
+    if (found.maybe == 0) return {0, 0};
+    found.maybe &= worth_deciding<L>(reinterpret_cast<const std::uint32_t*>(block + kIds), known);
+    return found;
   }
 
   const LaneQuery& query_;
