@@ -210,7 +210,7 @@ std::uint64_t lit_receivers(const ShadowCase& c, std::uint64_t n, TestRandom& ra
     const SurfacePoint point =
         surface_point(shading, static_cast<std::uint32_t>(i % 2), b.u, b.v);
     const Vec3d wi = render::normalize(Vec3d(light) - point.p);
-    queue.push(ray_origin(point, wi), light, render::ShadowEnd::kPointLight, render::Rgbd(1.0),
+    queue.push({ray_origin(point, wi), light, render::ShadowEnd::kPointLight}, render::Rgbd(1.0),
                static_cast<std::uint32_t>(i));
   }
   queue.flush(*tree, render::Traversal::kTree, results, stats);
@@ -277,7 +277,7 @@ std::uint64_t lit_from_emitter(const Similarity& place, double distance, double 
     if (std::abs(over) < 4.0 * point.clearance) {
       from = Vec3f(Vec3d(from) + std::copysign(4.0 * point.clearance, over) * point.ng);
     }
-    queue.push(from, ray_end(point, Vec3d(from)), render::ShadowEnd::kSurface, render::Rgbd(1.0),
+    queue.push({from, ray_end(point, Vec3d(from)), render::ShadowEnd::kSurface}, render::Rgbd(1.0),
                static_cast<std::uint32_t>(i));
   }
   queue.flush(*tree, render::Traversal::kTree, results, stats);

@@ -11,7 +11,7 @@ namespace {
 
 template <class Test, int W>
 Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, const Ray& ray,
-                  TraversalCounters& counters) {
+                  const EndTriangles& ends, std::size_t i, TraversalCounters& counters) {
   Occlusion found = Occlusion::kNone;
   typename Test::Prepared prepared;
   if (!Test::prepare(ray, tree.box, prepared)) {
@@ -25,6 +25,7 @@ Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, c
     for (std::uint32_t b = first; b < first + count; ++b) {
       ++counters.block_tests;
       const bool opaque = Test::block(prepared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
+        if (ends.hold(i, hit.id)) return false;
         found = tree.opaque(hit.id) ? Occlusion::kOpaque : Occlusion::kUndecided;
         return found == Occlusion::kOpaque;
       });
@@ -37,10 +38,10 @@ Occlusion any_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, c
 
 template <class Test>
 void one_by_one(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> result,
-                TraversalCounters& counters) {
+                const EndTriangles& ends, TraversalCounters& counters) {
   with_blocks(tree, [&](const auto& blocks) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      result[i] = any_hit<Test>(tree, blocks, rays[i], counters);
+      result[i] = any_hit<Test>(tree, blocks, rays[i], ends, i, counters);
     }
   });
 }
@@ -48,7 +49,7 @@ void one_by_one(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusi
 }  // namespace
 
 void any_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> result,
-              Traversal traversal, TraversalCounters* counters) {
+              Traversal traversal, TraversalCounters* counters, const EndTriangles& ends) {
   assert(result.size() >= rays.size());
   TraversalCounters counts;
   counts.calls = 1;
@@ -59,13 +60,13 @@ void any_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion
                                 ? nullptr
                                 : lane_kernel(chosen, LaneMode::kAny, tree.params.leaf_width);
   if (chosen == Traversal::kBruteForce || chosen == Traversal::kFastBruteForce) {
-    any_hits_brute_force(tree, rays, result.first(rays.size()), test, counts);
+    any_hits_brute_force(tree, rays, result.first(rays.size()), ends, test, counts);
   } else if (kernel != nullptr) {
-    any_hits_in_lanes(kernel, tree, rays, result.first(rays.size()), test, counts);
+    any_hits_in_lanes(kernel, tree, rays, result.first(rays.size()), ends, test, counts);
   } else if (test == TriangleTest::kFast) {
-    one_by_one<FastTest>(tree, rays, result, counts);
+    one_by_one<FastTest>(tree, rays, result, ends, counts);
   } else {
-    one_by_one<WatertightTest>(tree, rays, result, counts);
+    one_by_one<WatertightTest>(tree, rays, result, ends, counts);
   }
   if (counters != nullptr) *counters += counts;
 }

@@ -61,10 +61,11 @@ void for_all_pairs(const KdTree& tree, std::span<const Ray> rays, TraversalCount
 
 template <class Test>
 void closest(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
-             std::span<const HitOrder> after, TraversalCounters& counters) {
+             std::span<const HitOrder> after, const EndTriangles& ends, TraversalCounters& counters) {
   for_all_pairs<Test>(tree, rays, counters, [&](const auto& ray, const LeafBlock<kWidth>& block) {
     Hit& best = hits[ray.index];
     Test::block(ray.prepared, block, counters.exact_tests, [&](const Hit& hit) {
+      if (ends.hold(ray.index, hit.id)) return false;
       const bool counts = after.empty() || comes_after(hit, after[ray.index]);
       if (counts && comes_before(hit, best)) best = hit;
       return false;
@@ -74,11 +75,12 @@ void closest(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
 
 template <class Test>
 void any(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> result,
-         TraversalCounters& counters) {
+         const EndTriangles& ends, TraversalCounters& counters) {
   for_all_pairs<Test>(tree, rays, counters, [&](const auto& ray, const LeafBlock<kWidth>& block) {
     Occlusion& found = result[ray.index];
     if (found == Occlusion::kOpaque) return;
     Test::block(ray.prepared, block, counters.exact_tests, [&](const Hit& hit) {
+      if (ends.hold(ray.index, hit.id)) return false;
       found = tree.opaque(hit.id) ? Occlusion::kOpaque : Occlusion::kUndecided;
       return found == Occlusion::kOpaque;
     });
@@ -88,19 +90,19 @@ void any(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> res
 }  // namespace
 
 void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
-                              std::span<const HitOrder> after, TriangleTest test,
+                              std::span<const HitOrder> after, const EndTriangles& ends, TriangleTest test,
                               TraversalCounters& counters) {
   std::fill(hits.begin(), hits.end(), Hit{});
   const auto search = test == TriangleTest::kFast ? closest<FastTest> : closest<WatertightTest>;
-  search(tree, rays, hits, after, counters);
+  search(tree, rays, hits, after, ends, counters);
 }
 
 void any_hits_brute_force(const KdTree& tree, std::span<const Ray> rays,
-                          std::span<Occlusion> result, TriangleTest test,
+                          std::span<Occlusion> result, const EndTriangles& ends, TriangleTest test,
                           TraversalCounters& counters) {
   std::fill(result.begin(), result.end(), Occlusion::kNone);
   const auto search = test == TriangleTest::kFast ? any<FastTest> : any<WatertightTest>;
-  search(tree, rays, result, counters);
+  search(tree, rays, result, ends, counters);
 }
 
 }  // namespace raykiln::render

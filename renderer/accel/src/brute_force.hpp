@@ -8,11 +8,11 @@
 namespace raykiln::render {
 
 void closest_hits_brute_force(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
-                              std::span<const HitOrder> after, TriangleTest test,
+                              std::span<const HitOrder> after, const EndTriangles& ends, TriangleTest test,
                               TraversalCounters& counters);
 
 void any_hits_brute_force(const KdTree& tree, std::span<const Ray> rays,
-                          std::span<Occlusion> result, TriangleTest test,
+                          std::span<Occlusion> result, const EndTriangles& ends, TriangleTest test,
                           TraversalCounters& counters);
 
 }  // namespace raykiln::render

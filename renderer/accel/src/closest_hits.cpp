@@ -11,7 +11,8 @@ namespace {
 
 template <class Test, int W>
 Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, const Ray& ray,
-                const HitOrder* after, TraversalCounters& counters) {
+                const HitOrder* after, const EndTriangles& ends, std::size_t i,
+                TraversalCounters& counters) {
   Hit best;
   typename Test::Prepared prepared;
   if (!Test::prepare(ray, tree.box, prepared)) {
@@ -24,7 +25,7 @@ Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, con
     counters.block_tests += count;
     for (std::uint32_t b = first; b < first + count; ++b) {
       Test::block(prepared, blocks[b], counters.exact_tests, [&](const Hit& hit) {
-        const bool counts = after == nullptr || comes_after(hit, *after);
+        const bool counts = !ends.hold(i, hit.id) && (after == nullptr || comes_after(hit, *after));
         if (counts && comes_before(hit, best)) best = hit;
         return false;
       });
@@ -36,10 +37,11 @@ Hit closest_hit(const KdTree& tree, const std::vector<LeafBlock<W>>& blocks, con
 
 template <class Test>
 void one_by_one(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
-                std::span<const HitOrder> after, TraversalCounters& counters) {
+                std::span<const HitOrder> after, const EndTriangles& ends, TraversalCounters& counters) {
   with_blocks(tree, [&](const auto& blocks) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      hits[i] = closest_hit<Test>(tree, blocks, rays[i], after.empty() ? nullptr : &after[i], counters);
+      hits[i] = closest_hit<Test>(tree, blocks, rays[i], after.empty() ? nullptr : &after[i],
+                                  ends, i, counters);
     }
   });
 }
@@ -48,7 +50,7 @@ void one_by_one(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hi
 
 void closest_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
                   std::span<const HitOrder> after, Traversal traversal,
-                  TraversalCounters* counters) {
+                  TraversalCounters* counters, const EndTriangles& ends) {
   assert(hits.size() >= rays.size() && (after.empty() || after.size() >= rays.size()));
   TraversalCounters counts;
   counts.calls = 1;
@@ -59,13 +61,13 @@ void closest_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> 
                                 ? nullptr
                                 : lane_kernel(chosen, LaneMode::kClosest, tree.params.leaf_width);
   if (chosen == Traversal::kBruteForce || chosen == Traversal::kFastBruteForce) {
-    closest_hits_brute_force(tree, rays, hits.first(rays.size()), after, test, counts);
+    closest_hits_brute_force(tree, rays, hits.first(rays.size()), after, ends, test, counts);
   } else if (kernel != nullptr) {
-    closest_hits_in_lanes(kernel, tree, rays, hits.first(rays.size()), after, test, counts);
+    closest_hits_in_lanes(kernel, tree, rays, hits.first(rays.size()), after, ends, test, counts);
   } else if (test == TriangleTest::kFast) {
-    one_by_one<FastTest>(tree, rays, hits, after, counts);
+    one_by_one<FastTest>(tree, rays, hits, after, ends, counts);
   } else {
-    one_by_one<WatertightTest>(tree, rays, hits, after, counts);
+    one_by_one<WatertightTest>(tree, rays, hits, after, ends, counts);
   }
   if (counters != nullptr) *counters += counts;
 }

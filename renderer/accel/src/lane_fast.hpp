@@ -83,6 +83,7 @@ class FastLeafVisit {
   static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
   static constexpr bool kMoreSlack = true;
   static constexpr bool kInDouble = false;
+  static constexpr bool kHasEnds = false;
 
   FastLeafVisit(const LaneQuery& query, LaneCounts& counts) : query_(query), counts_(counts) {}
 

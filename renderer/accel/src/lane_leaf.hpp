@@ -24,6 +24,7 @@ class LeafVisit {
   static constexpr std::size_t kBlockFloats = 10 * kLeafWidth;
   static constexpr bool kMoreSlack = false;
   static constexpr bool kInDouble = true;
+  static constexpr bool kHasEnds = kAnyHit;  ///< LeafRays::end is looked at
 
   LeafVisit(const LaneQuery& query, LaneCounts& counts) : query_(query), counts_(counts) {}
 
@@ -82,7 +83,7 @@ class LeafVisit {
       if (count > 1) {
         const auto ray = filter_ray<Twice>(rays, lane);
         for (; b + 1 < count; b += 2) {
-          const auto both = candidates<Twice>(ray, first + kBlockFloats * b, rays.known[lane]);
+          const auto both = candidates<Twice>(ray, first + kBlockFloats * b, rays, lane);
           ++counts_.block_tests;
           if (decide(rays, lane, index, place + b, {both.maybe & 0xFFU, both.sure & 0xFFU})) return true;
           ++counts_.block_tests;
@@ -97,7 +98,7 @@ class LeafVisit {
       const float* const block = first + kBlockFloats * b;
       Found found{0, 0};
       for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
-        const Found part = candidates<B>(ray, block + at, rays.known[lane]);
+        const Found part = candidates<B>(ray, block + at, rays, lane);
         found.maybe |= part.maybe << at;
         found.sure |= part.sure << at;
       }
@@ -156,15 +157,18 @@ class LeafVisit {
       const Found filtered = may_be_hit<R, kLeafWidth, kAnyHit>(ray, block + i);
       std::uint32_t found = filtered.maybe & lanes & ~done;
       if (found == 0) continue;
+      const auto id = V::set1(ids[i]);
+      found &= ~V::bits(V::eq(V::load(rays.known), id));
+      if constexpr (kHasEnds) found &= ~V::bits(V::eq(V::load(rays.end), id));
       if constexpr (kAnyHit) {
         const std::uint32_t sure = found & filtered.sure;
         for (std::uint32_t rest = sure; rest != 0; rest &= rest - 1) {
           const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
           if (stopped(rays.index[lane], ids[i])) done |= 1U << lane;
         }
-        if ((found &= ~sure) == 0) continue;
+        found &= ~sure;
       }
-      found &= ~V::bits(V::eq(V::load(rays.known), V::set1(ids[i])));
+      if (found == 0) continue;
       done |= decide_rays(rays, found, axis, place, i);
       ray.t_max = V::load(rays.t_max);
     }
@@ -300,10 +304,12 @@ class LeafVisit {
 
   // Those of a block, or of the part of it that begins at `block`, that have to be decided.
   template <class L>
-  static Found candidates(const FilterRay<L>& ray, const float* block, std::uint32_t known) {
+  static Found candidates(const FilterRay<L>& ray, const float* block, const Rays& rays, std::uint32_t lane) {
     Found found = may_be_hit<L, kLeafWidth, kAnyHit>(ray, block);
     if (found.maybe == 0) return {0, 0};
-    found.maybe &= worth_deciding<L>(reinterpret_cast<const std::uint32_t*>(block + kIds), known);
+    const auto* const ids = reinterpret_cast<const std::uint32_t*>(block + kIds);
+    found.maybe &= worth_deciding<L>(ids, rays.known[lane]);
+    if constexpr (kHasEnds) found.maybe &= ~L::bits(L::eq(L::load(ids), L::set1(rays.end[lane])));
     return found;
   }
 

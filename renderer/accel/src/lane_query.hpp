@@ -38,6 +38,9 @@ struct LaneQuery {
   const float* rays;   ///< Ray: 8 floats each
   std::size_t ray_count;
   float box_lo[3], box_hi[3];
+  /// Triangles that rays begin and end on, which need not be decided, as `keep` takes none of them; or nullptr.
+  const std::uint32_t* from;
+  const std::uint32_t* to;
 
   /// Called for a hit within the ray's interval. Closest-hit: the best hit from now on. Any-hit: an
   /// id other than kLaneNoHit ends the ray.

@@ -15,7 +15,7 @@ struct alignas(64) LeafRays {
   float o[3][kW], inv_d[3][kW];
   float sx[kW], sy[kW], t_min[kW], t_max[kW];  ///< t_max: not beyond the best hit so far
   float limit[kW];          ///< cells entered beyond need no visit
-  std::uint32_t known[kW];  ///< a triangle that need not be decided again
+  std::uint32_t known[kW], end[kW];  ///< triangles that need not be decided: the best so far; where the ray ends
   // For the test in double, see shear_ray.
   double shear_x[kW], shear_y[kW], inv_dz[kW];
   std::uint32_t main_axis[kW];

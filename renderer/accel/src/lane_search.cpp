@@ -51,7 +51,9 @@ struct Closest {
   std::span<const Ray> rays;
   std::span<Hit> hits;
   std::span<const HitOrder> after;
+  const EndTriangles& ends;
   const KdTree& tree;
+  bool has_ends = !ends.from.empty() || !ends.to.empty();
 
   LaneBest decide(std::size_t ray, const typename Test::Prepared& ready,
                   std::uint32_t block, std::uint32_t lanes) {
@@ -64,7 +66,7 @@ struct Closest {
 
   LaneBest keep(std::size_t ray, const Hit& hit) {
     Hit& best = hits[ray];
-    const bool counts = after.empty() || comes_after(hit, after[ray]);
+    const bool counts = !(has_ends && ends.hold(ray, hit.id)) && (after.empty() || comes_after(hit, after[ray]));
     if (counts && comes_before(hit, best)) best = hit;
     return {best.t, best.id};
   }
@@ -76,7 +78,9 @@ struct Any {
   const LeafBlock<W>* blocks;
   std::span<const Ray> rays;
   std::span<Occlusion> result;
+  const EndTriangles& ends;
   const KdTree& tree;
+  bool has_ends = !ends.from.empty() || !ends.to.empty();
 
   LaneBest decide(std::size_t ray, const typename Test::Prepared& ready,
                   std::uint32_t block, std::uint32_t lanes) {
@@ -89,6 +93,7 @@ struct Any {
   }
 
   LaneBest keep(std::size_t ray, const Hit& hit) {
+    if (has_ends && ends.hold(ray, hit.id)) return {0.0F, kNoHit};
     const bool opaque = tree.opaque(hit.id);
     result[ray] = opaque ? Occlusion::kOpaque : Occlusion::kUndecided;
     return opaque ? LaneBest{hit.t, hit.id} : LaneBest{0.0F, kNoHit};
@@ -109,6 +114,8 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
     query.box_hi[k] = tree.box.hi[k];
   }
   query.context = &search;
+  query.from = search.ends.from.empty() ? nullptr : search.ends.from.data();
+  query.to = search.ends.to.empty() ? nullptr : search.ends.to.data();
   query.decide = [](void* context, std::size_t ray, const LaneShear& shear, std::uint32_t block,
                     std::uint32_t lanes) {
     auto& asked = *static_cast<Search*>(context);
@@ -131,18 +138,18 @@ void run(LaneKernel kernel, const KdTree& tree, Search& search, TraversalCounter
 
 template <class Test>
 void closest(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
-             std::span<const HitOrder> after, TraversalCounters& counters) {
+             std::span<const HitOrder> after, const EndTriangles& ends, TraversalCounters& counters) {
   with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
-    Closest<Test, W> search{blocks.data(), rays, hits, after, tree};
+    Closest<Test, W> search{blocks.data(), rays, hits, after, ends, tree};
     run(kernel, tree, search, counters);
   });
 }
 
 template <class Test>
 void any(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
-         std::span<Occlusion> result, TraversalCounters& counters) {
+         std::span<Occlusion> result, const EndTriangles& ends, TraversalCounters& counters) {
   with_blocks(tree, [&]<int W>(const std::vector<LeafBlock<W>>& blocks) {
-    Any<Test, W> search{blocks.data(), rays, result, tree};
+    Any<Test, W> search{blocks.data(), rays, result, ends, tree};
     run(kernel, tree, search, counters);
   });
 }
@@ -165,19 +172,19 @@ LaneKernel lane_kernel(Traversal traversal, LaneMode mode, int leaf_width) {
 }
 
 void closest_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
-                           std::span<Hit> hits, std::span<const HitOrder> after, TriangleTest test,
+                           std::span<Hit> hits, std::span<const HitOrder> after, const EndTriangles& ends, TriangleTest test,
                            TraversalCounters& counters) {
   std::fill(hits.begin(), hits.end(), Hit{});
   const auto search = test == TriangleTest::kFast ? closest<FastTest> : closest<WatertightTest>;
-  search(kernel, tree, rays, hits, after, counters);
+  search(kernel, tree, rays, hits, after, ends, counters);
 }
 
 void any_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
-                       std::span<Occlusion> result, TriangleTest test,
+                       std::span<Occlusion> result, const EndTriangles& ends, TriangleTest test,
                        TraversalCounters& counters) {
   std::fill(result.begin(), result.end(), Occlusion::kNone);
   const auto search = test == TriangleTest::kFast ? any<FastTest> : any<WatertightTest>;
-  search(kernel, tree, rays, result, counters);
+  search(kernel, tree, rays, result, ends, counters);
 }
 
 }  // namespace raykiln::render

@@ -18,9 +18,9 @@ inline constexpr std::size_t kFewRays = 8;
 /// The same as the scalar walk, counts included. The tree is not empty.
 void closest_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
                            std::span<Hit> hits, std::span<const HitOrder> after,
-                           TriangleTest test, TraversalCounters& counters);
+                           const EndTriangles& ends, TriangleTest test, TraversalCounters& counters);
 void any_hits_in_lanes(LaneKernel kernel, const KdTree& tree, std::span<const Ray> rays,
-                       std::span<Occlusion> result, TriangleTest test,
+                       std::span<Occlusion> result, const EndTriangles& ends, TriangleTest test,
                        TraversalCounters& counters);
 
 }  // namespace raykiln::render

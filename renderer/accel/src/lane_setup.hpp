@@ -80,7 +80,13 @@ class RaySource {
     const std::uint32_t usable = invert(batch) & given;
     unusable_ += n - static_cast<std::size_t>(__builtin_popcount(usable));
     if (usable != 0) batch.waiting = enter_root(batch) & usable;
-    if (batch.waiting != 0) shear(batch);
+    if (batch.waiting == 0) return;
+    shear(batch);
+    if (query_.from != nullptr) keep_ends(batch.known, query_.from, batch, n);
+    if constexpr (Leaf::kHasEnds) {
+      V::store(batch.end, V::set1(kLaneNoHit));
+      if (query_.to != nullptr) keep_ends(batch.end, query_.to, batch, n);
+    }
   }
 
   /// Where the ray that next() gave is.
@@ -190,6 +196,10 @@ class RaySource {
     V::store(batch.t0, t0);
     V::store(batch.t1, t1);
     return V::bits(V::le(t0, t1));
+  }
+
+  static void keep_ends(std::uint32_t (&kept)[kW], const std::uint32_t* ids, const Batch& batch, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) kept[i] = ids[batch.index[i]];
   }
 
   // Of the root's box from the origin: its largest coordinate as seen from there.

@@ -156,6 +156,7 @@ class LaneWalk {
     group.t_max[lane] = ready.t_max[place];
     group.limit[lane] = ready.limit[place];
     group.known[lane] = ready.known[place];
+    if constexpr (Leaf::kHasEnds) group.end[lane] = ready.end[place];
     if constexpr (Leaf::kMoreSlack) group.tolerance[lane] = ready.tolerance[place];
     if constexpr (Leaf::kInDouble) {
       group.shear_x[lane] = ready.shear_x[place];

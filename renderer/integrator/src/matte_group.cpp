@@ -119,11 +119,14 @@ void MatteGroup::shade(const Transport& transport, const ShadingRange& range, Sh
   next.resize(before + chosen_.size(), transport.emitters_by_tree);
   query.next_rays = reinterpret_cast<LaneRay*>(next.rays().data() + before);
   query.next_paths = reinterpret_cast<LanePath*>(next.states().data() + before);
+  query.next_from = next.from().data() + before;
   query.next_origins =
       transport.emitters_by_tree ? reinterpret_cast<LaneReceiver*>(next.origins.data() + before) : nullptr;
   const ShadowQueue::Room room = sinks.shadows.open(chosen_.size() * (lights_.size() + 1));
   query.shadow_rays = reinterpret_cast<LaneRay*>(room.rays);
   query.shadow_lights = reinterpret_cast<LaneLight*>(room.waiting);
+  query.shadow_from = room.from;
+  query.shadow_to = room.to;
   query.emitted = &sinks.results.data()->emitted.x;
   MatteCounts counts{};
   kernel_(query, counts);

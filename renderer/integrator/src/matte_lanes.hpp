@@ -62,7 +62,7 @@ class MatteBatch {
     alignas(64) std::uint64_t words[5][kLanes];
     alignas(64) double through[3][kLanes];
     alignas(64) float barycentrics[2][kLanes], d[3][kLanes];
-    std::uint32_t ids[kLanes], materials[kLanes];
+    std::uint32_t (&ids)[kLanes] = ids_, materials[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       const LanePath& p = path(i);
       const LaneHit& hit = query_.hits[index_[i]];
@@ -98,12 +98,15 @@ class MatteBatch {
     return vertex;
   }
 
-  void push_shadows(I64 mask, const V3f& from, const V3f& to, float t_max, const V3& light) {
+  void push_shadows(I64 mask, const V3f& from, const V3f& to, float t_max, const V3& light,
+                    const std::uint32_t* ends) {
     const V3f d = to - from;
     for (int i = 0; i < kLanes; ++i) {
       if (mask[i] == 0) continue;
       query_.shadow_rays[counts_.shadows] = {{from.x[i], from.y[i], from.z[i]}, 0.0F,
                                              {d.x[i], d.y[i], d.z[i]}, t_max};
+      query_.shadow_from[counts_.shadows] = ids_[i];
+      if (ends != nullptr) query_.shadow_to[counts_.shadows] = ends[i];
       query_.shadow_lights[counts_.shadows] = {{light.x[i], light.y[i], light.z[i]}, path(i).slot};
       ++counts_.shadows;
     }
@@ -130,7 +133,7 @@ class MatteBatch {
     const V3 found = vertex.throughput * value.f_cos * arriving;
     const V3f to = narrow(place);
     push_shadows(vertex.active & apart & lit & ~is_zero(arriving) & ~is_zero(found),
-                 ray_origins(vertex.point, wi), to, 1.0F - 16.0F * 0x1p-24F, found);
+                 ray_origins(vertex.point, wi), to, 1.0F - 16.0F * 0x1p-24F, found, nullptr);
   }
 
   /// Weighted by power: the first index whose sum exceeds u times the total.
@@ -218,7 +221,7 @@ class MatteBatch {
     const I64 sent = vertex.active & (pdf_area > 0.0) & (distance2 > 0.0) & (cosine > 0.0) &
                      ~is_zero(value.f_cos) & ~is_zero(found);
     const V3f from = ray_origins(vertex.point, wi);
-    push_shadows(sent, from, ray_ends(point, wide(from)), 1.0F - 0x1p-24F, found);
+    push_shadows(sent, from, ray_ends(point, wide(from)), 1.0F - 0x1p-24F, found, triangles);
   }
 
   void scatter(const LaneVertex& vertex) {
@@ -267,6 +270,7 @@ class MatteBatch {
     }
     const std::size_t n = counts_.next++;
     query_.next_rays[n] = {{from.x[i], from.y[i], from.z[i]}, 0.0F, {wi.x[i], wi.y[i], wi.z[i]}, __builtin_inff()};
+    query_.next_from[n] = ids_[i];
     LanePath& next = query_.next_paths[n];
     next = before;
     for (int k = 0; k < 3; ++k) next.throughput[k] = t[k];
@@ -282,7 +286,7 @@ class MatteBatch {
   const MatteQuery& query_;
   MatteCounts& counts_;
   int count_ = 0;
-  std::uint32_t index_[kLanes];
+  std::uint32_t index_[kLanes], ids_[kLanes];  ///< of the paths; of the triangles that they met
 };
 
 void shade_matte_lanes(const MatteQuery& query, MatteCounts& counts) {

@@ -72,9 +72,12 @@ struct MatteQuery {
 
   LaneRay* next_rays;  ///< room for one a vertex, and so for what goes with it
   LanePath* next_paths;
+  std::uint32_t* next_from;  ///< the triangles that they leave
   LaneReceiver* next_origins;  ///< null where emitters are not drawn from a tree
   LaneRay* shadow_rays;        ///< room for one a vertex and light, and one more a vertex
   LaneLight* shadow_lights;
+  std::uint32_t* shadow_from;  ///< the triangles on which they begin
+  std::uint32_t* shadow_to;    ///< those on which they end; kNoHit stands there
   double* emitted;  ///< of slot 0; poisoned by throughputs that are not finite
   std::size_t emitted_stride;
 };

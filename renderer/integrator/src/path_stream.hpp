@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "raykiln/accel/kdtree.hpp"
 #include "raykiln/math/ray.hpp"
 #include "raykiln/integrator/camera_ray.hpp"
 #include "raykiln/sampling/random.hpp"
@@ -38,21 +39,26 @@ class PathStream {
   [[nodiscard]] std::span<Ray> rays() { return {rays_.data(), size_}; }
   [[nodiscard]] std::span<const PathState> states() const { return {states_.data(), size_}; }
   [[nodiscard]] std::span<PathState> states() { return {states_.data(), size_}; }
+  /// The triangle that each ray leaves, or kNoHit.
+  [[nodiscard]] std::span<const std::uint32_t> from() const { return {from_.data(), size_}; }
+  [[nodiscard]] std::span<std::uint32_t> from() { return {from_.data(), size_}; }
 
-  void push(const Ray& ray, const PathState& state) {
+  void push(const Ray& ray, const PathState& state, std::uint32_t from = kNoHit) {
     make_room(size_ + 1);
     rays_[size_] = ray;
     states_[size_] = state;
+    from_[size_] = from;
     ++size_;
   }
-  void push(const Ray& ray, const PathState& state, const EmitterReceiver& origin) {
-    push(ray, state);
+  void push(const Ray& ray, const PathState& state, std::uint32_t from, const EmitterReceiver& origin) {
+    push(ray, state, from);
     origins.push_back(origin);
   }
-  /// New rays and states hold anything: they are to be written. With `from_places` the places where paths come from
+  /// New rays and states hold anything: they are to be written; they leave no triangle until it is. With `from_places` the places where paths come from
   /// follow.
   void resize(std::size_t size, bool from_places) {
     make_room(size);
+    if (size > size_) std::fill(from_.begin() + static_cast<std::ptrdiff_t>(size_), from_.begin() + static_cast<std::ptrdiff_t>(size), kNoHit);
     size_ = size;
     if (from_places) origins.resize(size);
   }
@@ -67,11 +73,13 @@ class PathStream {
     if (size <= rays_.size()) return;
     rays_.resize(std::max(size, 2 * rays_.size()));
     states_.resize(rays_.size());
+    from_.resize(rays_.size());
   }
 
   /// Longer than size_ once they have been: room is made, and its elements constructed, once.
   std::vector<Ray> rays_;
   std::vector<PathState> states_;
+  std::vector<std::uint32_t> from_;
   std::size_t size_ = 0;
 };
 

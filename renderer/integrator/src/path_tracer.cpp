@@ -138,7 +138,7 @@ void PathTracer::advance(Call& call, std::size_t begin, std::size_t end) {
   scratch.hits.resize(rays.size());
   const Clock::time_point start = Clock::now();
   closest_hits(scratch.transport.tree, rays, scratch.hits, {}, scratch.transport.settings.traversal,
-               &call.stats.traversal);
+               &call.stats.traversal, {.from = front.from().subspan(begin, end - begin)});
   if (scratch.transport.gaps.any()) {
     scratch.gaps.paths(scratch.transport, rays,
                        scratch.front.states().subspan(begin, end - begin), scratch.hits,

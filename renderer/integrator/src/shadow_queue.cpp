@@ -20,19 +20,20 @@ constexpr float kBeforePointLight = 1.0F - 16.0F * 0x1p-24F;
 
 }  // namespace
 
-void ShadowQueue::push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const Rgbd& light,
-                       std::uint32_t slot) {
+void ShadowQueue::push(const Way& way, const Rgbd& light, std::uint32_t slot) {
   Ray ray;
-  ray.o = from;
-  if (end == ShadowEnd::kInfinity) {
-    ray.d = to;
+  ray.o = way.from;
+  if (way.end == ShadowEnd::kInfinity) {
+    ray.d = way.to;
   } else {
-    ray.d = to - from;
-    ray.t_max = end == ShadowEnd::kSurface ? kBeforeSurface : kBeforePointLight;
+    ray.d = way.to - way.from;
+    ray.t_max = way.end == ShadowEnd::kSurface ? kBeforeSurface : kBeforePointLight;
   }
   make_room(size_ + 1);
   rays_[size_] = ray;
   waiting_[size_] = {light, slot};
+  from_[size_] = way.from_triangle;
+  to_[size_] = way.to_triangle;
   ++size_;
 }
 
@@ -40,11 +41,15 @@ void ShadowQueue::make_room(std::size_t size) {
   if (size <= rays_.size()) return;
   rays_.resize(std::max(size, 2 * rays_.size()));
   waiting_.resize(rays_.size());
+  from_.resize(rays_.size());
+  to_.resize(rays_.size());
 }
 
 ShadowQueue::Room ShadowQueue::open(std::size_t most) {
   make_room(size_ + most);
-  return {size_, rays_.data() + size_, waiting_.data() + size_};
+  std::fill_n(from_.data() + size_, most, kNoHit);
+  std::fill_n(to_.data() + size_, most, kNoHit);
+  return {size_, rays_.data() + size_, waiting_.data() + size_, from_.data() + size_, to_.data() + size_};
 }
 
 void ShadowQueue::close(const Room& room, std::size_t count) { size_ = room.first + count; }
@@ -55,7 +60,7 @@ void ShadowQueue::flush(const KdTree& tree, Traversal traversal, std::span<PathR
   if (gaps.any()) return flush_through_gaps(tree, traversal, gaps, results, stats);
   blocked_.resize(size_);
   const auto start = std::chrono::steady_clock::now();
-  any_hits(tree, rays(), blocked_, traversal, &stats.traversal);
+  any_hits(tree, rays(), blocked_, traversal, &stats.traversal, ends());
   stats.traversal_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   stats.shadow_rays += size_;
@@ -71,7 +76,7 @@ void ShadowQueue::flush_through_gaps(const KdTree& tree, Traversal traversal, co
   hits_.resize(size_);
   share_.assign(size_, 1.0);
   const auto start = std::chrono::steady_clock::now();
-  closest_hits(tree, rays(), hits_, {}, traversal, &stats.traversal);
+  closest_hits(tree, rays(), hits_, {}, traversal, &stats.traversal, ends());
   gap_walk_.go_on(
       tree, traversal, rays(), hits_, stats,
       [&](std::size_t i, const Hit& hit) {

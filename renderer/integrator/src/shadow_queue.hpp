@@ -25,9 +25,13 @@ class ShadowQueue {
 
   [[nodiscard]] bool full() const { return size_ >= kCapacity; }
 
-  /// A ray from `from`, which is clear of its surface, to `to`; with kInfinity along `to`.
-  void push(const Vec3f& from, const Vec3f& to, ShadowEnd end, const Rgbd& light,
-            std::uint32_t slot);
+  /// A way from `from`, which is clear of its surface, to `to`; with kInfinity along `to`.
+  struct Way {
+    Vec3f from, to;
+    ShadowEnd end;
+    std::uint32_t from_triangle = kNoHit, to_triangle = kNoHit;  ///< on which it begins and ends
+  };
+  void push(const Way& way, const Rgbd& light, std::uint32_t slot);
 
   struct Waiting {
     Rgbd light;
@@ -38,6 +42,8 @@ class ShadowQueue {
     std::size_t first;
     Ray* rays;
     Waiting* waiting;
+    std::uint32_t* from;  ///< triangles on which they begin and end, kNoHit unless written
+    std::uint32_t* to;
   };
   [[nodiscard]] Room open(std::size_t most);
   /// Keeps the first `count` of them.
@@ -53,12 +59,14 @@ class ShadowQueue {
  private:
   void make_room(std::size_t size);
   [[nodiscard]] std::span<const Ray> rays() const { return {rays_.data(), size_}; }
+  [[nodiscard]] EndTriangles ends() const { return {{from_.data(), size_}, {to_.data(), size_}}; }
   void flush_through_gaps(const KdTree& tree, Traversal traversal, const Gaps& gaps,
                           std::span<PathResult> results, RenderStats& stats);
 
   /// Longer than size_ once they have been: room is made, and its elements constructed, once.
   std::vector<Ray> rays_;
   std::vector<Waiting> waiting_;
+  std::vector<std::uint32_t> from_, to_;
   std::size_t size_ = 0;
   std::vector<Occlusion> blocked_;
   std::vector<Hit> hits_;      ///< where surfaces may have gaps

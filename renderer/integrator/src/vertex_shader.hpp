@@ -243,7 +243,7 @@ class VertexShader {
     if constexpr (std::is_same_v<Light, SpotLight>) arriving *= cone_share(light, -wi);
     if (arriving == Rgbd(0.0)) return;
     const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
-    add_unfindable({ray_origin(vertex.point, wi), light.position, ShadowEnd::kPointLight},
+    add_unfindable({ray_origin(vertex.point, wi), light.position, ShadowEnd::kPointLight, vertex.id},
                    state_.throughput * value.f_cos * arriving);
   }
 
@@ -252,7 +252,7 @@ class VertexShader {
     const Vec3d wi = -light.direction;
     if (!on_lit_side(vertex, cosine_over(vertex.point.ng, wi))) return;
     const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
-    add_unfindable({ray_origin(vertex.point, wi), Vec3f(wi), ShadowEnd::kInfinity},
+    add_unfindable({ray_origin(vertex.point, wi), Vec3f(wi), ShadowEnd::kInfinity, vertex.id},
                    state_.throughput * value.f_cos * Rgbd(light.irradiance));
   }
 
@@ -302,7 +302,7 @@ class VertexShader {
       radiance *= scene_.gaps.met({sample.triangle, sample.u, sample.v}, wi);
     }
     const Vec3f from = ray_origin(vertex.point, wi);
-    queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface},
+    queue({from, ray_end(sample.point, Vec3d(from)), ShadowEnd::kSurface, vertex.id, sample.triangle},
           state_.throughput * value.f_cos * radiance * weight);
   }
 
@@ -319,7 +319,7 @@ class VertexShader {
     if (value.f_cos == Rgbd(0.0)) return;
     const double weight =
         power_heuristic(sample.pdf, settings_.branches * value.pdf) / sample.pdf;
-    queue({ray_origin(vertex.point, sample.wi), wi, ShadowEnd::kInfinity},
+    queue({ray_origin(vertex.point, sample.wi), wi, ShadowEnd::kInfinity, vertex.id},
           state_.throughput * value.f_cos * sample.radiance * weight);
   }
 
@@ -351,9 +351,9 @@ class VertexShader {
       ray.o = ray_origin(vertex.point, Vec3d(sample.wi));
       ray.d = sample.wi;
       if (scene_.emitters_by_tree) {
-        sinks_.next.push(ray, child, receiver(vertex));
+        sinks_.next.push(ray, child, vertex.id, receiver(vertex));
       } else {
-        sinks_.next.push(ray, child);
+        sinks_.next.push(ray, child, vertex.id);
       }
       if (kSwitches.rich && cone_ != nullptr) sinks_.next.cones.push_back({covered_, cone_->spread + spread_by(sample.pdf)});
     }
@@ -374,12 +374,8 @@ class VertexShader {
     return vertex.transmits || (height > 0.0) == viewed_from_front;
   }
 
-  struct ShadowWay {
-    Vec3f from, to;
-    ShadowEnd end;
-  };
   /// Light that arrives if nothing is in the way; where shadows are left out, in any case.
-  void add_unfindable(const ShadowWay& way, const Rgbd& light) {
+  void add_unfindable(const ShadowQueue::Way& way, const Rgbd& light) {
     if (light == Rgbd(0.0)) return;
     if (kSwitches.reduced && leaves_out(Effect::kPointLightShadows)) {
       sinks_.results[state_.slot].emitted += light;
@@ -387,9 +383,9 @@ class VertexShader {
       queue(way, light);
     }
   }
-  void queue(const ShadowWay& way, const Rgbd& light) {
+  void queue(const ShadowQueue::Way& way, const Rgbd& light) {
     if (light == Rgbd(0.0)) return;
-    sinks_.shadows.push(way.from, way.to, way.end, light, state_.slot);
+    sinks_.shadows.push(way, light, state_.slot);
     if (sinks_.shadows.full()) {
       sinks_.shadows.flush(scene_.tree, settings_.traversal, sinks_.results, sinks_.stats,
                            scene_.gaps);

@@ -122,11 +122,22 @@ enum class Traversal {
   kFastTree, kFastBruteForce, kFastScalar, kFastAvx2, kFastAvx512
 };
 
+/// Triangles on which rays begin (`from`) and end (`to`), one a ray or empty; kNoHit for none. A ray does not meet
+/// them: it has left the plane of the one, and stops at that of the other. What rounding would make of it is not asked.
+struct EndTriangles {
+  std::span<const std::uint32_t> from{}, to{};
+
+  /// Whether triangle `id` is one of them for ray i.
+  [[nodiscard]] bool hold(std::size_t i, std::uint32_t id) const {
+    return (!from.empty() && from[i] == id) || (!to.empty() && to[i] == id);
+  }
+};
+
 /// For every ray the hit with the lowest (t, id); t, id, u, v do not depend on the tree, its
 /// parameters or the traversal. Feed 1024 rays or more a call. `after` is empty or one a ray.
 void closest_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Hit> hits,
                   std::span<const HitOrder> after = {}, Traversal traversal = Traversal::kTree,
-                  TraversalCounters* counters = nullptr);
+                  TraversalCounters* counters = nullptr, const EndTriangles& ends = {});
 
 /// What stands in the way of a shadow ray.
 enum class Occlusion : std::uint8_t {
@@ -137,6 +148,7 @@ enum class Occlusion : std::uint8_t {
 
 /// One answer a ray, as soon as an opaque triangle is found.
 void any_hits(const KdTree& tree, std::span<const Ray> rays, std::span<Occlusion> result,
-              Traversal traversal = Traversal::kTree, TraversalCounters* counters = nullptr);
+              Traversal traversal = Traversal::kTree, TraversalCounters* counters = nullptr,
+              const EndTriangles& ends = {});
 
 }  // namespace raykiln::render
