@@ -59,11 +59,15 @@ Film rendered(const PreparedScene& scene, const RenderSettings& settings, std::u
   return film;
 }
 
+/// Of scenes whose rate has an upper bound, too: with 200 a rate of 0.96, conservative as it may be, is beyond 0.98 in
+/// 4 of 100 cases, with so many in 5 of 10^4.
+constexpr std::size_t kManySeeds = 800;
+
 class RealScenes : public ::testing::TestWithParam<Case> {};
 
 TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
   if (!GetParam().ordinary && !long_run()) GTEST_SKIP() << "RAYKILN_LONG=1";
-  const std::size_t seeds = tests::kSanitized ? 4 : long_run() ? 200 : 64;
+  const std::size_t seeds = tests::kSanitized ? 4 : !long_run() ? 64 : GetParam().tame ? kManySeeds : 200;
   RenderSettings settings;
   settings.width = settings.height = long_run() ? 24 : 12;
   if (GetParam().adaptive) settings.width = kCellSide + settings.height / 3;  // at least two cells
@@ -110,7 +114,7 @@ TEST_P(RealScenes, IntervalsHoldTheTruthOrAreFlagged) {
   // What is shown is the truth on average, up to what few samples can tell.
   EXPECT_GT(ratio, GetParam().tame ? 0.95 : 0.8);
   EXPECT_LT(ratio, GetParam().tame ? 1.05 : 1.25);
-  // 180 to 196 of 200 are asked for; with fewer seeds the band is 4 standard deviations about 0.95.
+  // 180 to 196 of 200 are asked for, as a rate; with fewer seeds the band is 4 standard deviations about 0.95.
   const double band = 4.0 * std::sqrt(0.05 * 0.95 / n);
   EXPECT_GE(covered / n, long_run() ? 0.90 : 0.95 - band);
   // An interval of everything holds the truth, too: a quarter wide, flagged a factor of 2 to 2.5.
