@@ -41,11 +41,6 @@ class BuildContext {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
   }
 
-  /// Says that the corners will be asked for soon.
-  void prefetch(std::uint32_t triangle) const {
-    __builtin_prefetch(&mesh.positions[mesh.triangles[triangle][0]]);
-  }
-
   const BuildKernels& kernels;
   const TriangleView& mesh;
   const BuildParams params;  ///< made sane by the constructor

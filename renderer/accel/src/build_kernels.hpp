@@ -11,7 +11,7 @@ namespace raykiln::render {
 /// Bins across an axis of a cell; with the two of its faces they fit into a byte.
 inline constexpr std::size_t kMaxBins = 240;
 /// Up to so many references the sides of every plane are counted.
-inline constexpr std::size_t kCountingMax = 32;
+inline constexpr std::size_t kCountingMax = 64;
 
 /// References as the kernels see them: eight words each, lo.xyz, id, hi.xyz, nothing.
 using ReferenceWords = const float*;
@@ -44,7 +44,20 @@ inline constexpr std::size_t kMostCountedPlanes = 3 * 2 * kCountingMax;
 struct CountedPlanes {
   CountedPlane* planes;
   std::size_t size;
-  std::uint32_t full_axes;  ///< how many needed all their planes counted
+  std::uint64_t operations;  ///< comparisons, four as one
+};
+
+/// The ends of extents in a bin of a larger cell, at most kCountingMax of each kind.
+struct BinPlanesQuery {
+  const float *lows, *highs, *planars;  ///< an extent that is planar has both ends, too
+  std::uint32_t n_lows, n_highs, n_planars;
+  std::int32_t n_left, n_right;  ///< triangles before and behind the bin, or through it
+  std::int32_t n, affordable;    ///< of the cell
+  std::uint32_t axis;
+  float cell_lo, cell_hi, per_width;
+  RoughCost cost;
+  float threshold;  ///< planes that cost more for certain are left out
+  float beyond;     ///< the same for those beyond the budget
 };
 
 /// Positions in a cell to bins: see BinGrid.
@@ -93,9 +106,21 @@ struct SplitCounts {
   std::uint32_t n_both, left, right;
 };
 
+/// Two parts of a cell, x y z and a zero of the lower and upper corner each, and the mesh.
+struct ClipQuery {
+  const float* positions;  ///< three words a vertex
+  const std::uint32_t* triangles;
+  float left[2][4], right[2][4];
+  std::uint32_t axis;  ///< the parts differ there
+};
+/// The id of a reference to nothing.
+inline constexpr std::uint32_t kNoReference = 0xFFFFFFFFU;
+
 struct BuildKernels {
   /// Planes across all axes that may be the cheapest, or as cheap: among them all that are.
   void (*count_planes)(const CountingQuery& query, CountedPlanes& result);
+  /// The same across one axis, within a bin.
+  void (*count_planes_of_bin)(const BinPlanesQuery& query, CountedPlanes& result);
   /// Counts extents in bins and writes the codes of the references.
   void (*count_bins)(const BinScale& scale, ReferenceWords references, std::size_t n, BinCode* codes,
                      const BinTables& tables);
@@ -109,6 +134,12 @@ struct BuildKernels {
   /// `left` may be `from` or before it.
   void (*split_references)(const SplitQuery& query, ReferenceWords from, std::uint32_t n, float* left,
                            float* right, SplitCounts& result);
+  /// Gives references on both sides the bounds of the triangle's part there; where it is empty they
+  /// become kNoReference. Bits: all left ones are there, all right ones.
+  unsigned (*clip_references)(const ClipQuery& query, const SplitCounts::Both* both, std::uint32_t n,
+                              float* left, float* right);
+  /// Writes the bounds of the part of a triangle, nine words, in a cell; false when it is empty.
+  bool (*clip_triangle)(const float* corners, const float (&cell)[2][4], float* to);
 };
 
 /// The fastest that the processor can run, or the one for every processor by RAYKILN_KERNEL=scalar.

@@ -35,7 +35,7 @@ SweepResult search_by_counting(const BuildContext& context, std::span<const Refe
   const CountingQuery query = query_of(references, input, leaf_cost, context.params);
   context.kernels.count_planes(query, found);
   counts.events_swept += 6 * n;
-  counts.keys_sorted_passes += found.full_axes * n * n;  // 2n planes by n triangles, two compares, four at once
+  counts.keys_sorted_passes += found.operations;
   BestOfAxes best;
   std::optional<PlaneChooser> chooser;  // planes come axis by axis
   std::uint32_t axis = 3;

@@ -182,7 +182,10 @@ float bound_bins(const BinBoundsQuery& q, BinBounds& bounds) {
     const Floats nl_most = __builtin_convertvector(begun_behind, Floats);
     const Floats nr = __builtin_convertvector(n - gone_behind, Floats);
     const Floats nr_most = __builtin_convertvector(n - gone, Floats);
-    const Floats a = left * nl + right * nr, b = left_behind * nl + right_behind * nr;
+    const Floats nl_nr = nl + nr, either = static_cast<float>(n) - nl_nr;  // on one side at least
+    const Floats rest = either > 0.0F ? either : Floats{};
+    const Floats a = left * nl + right * nr + (left < right ? left : right) * rest;
+    const Floats b = left_behind * nl + right_behind * nr + (left_behind < right_behind ? left_behind : right_behind) * rest;
     const Floats a_most = left * nl_most + right * nr_most;
     const Floats b_most = left_behind * nl_most + right_behind * nr_most;
     Floats least = (c.step + (a < b ? a : b)) * (1.0F - kRoughSlack) - slack;

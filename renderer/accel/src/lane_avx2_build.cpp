@@ -9,12 +9,13 @@ constexpr int kLanes = 8;
 }  // namespace raykiln::render
 
 #include "kernel_bins.hpp"
+#include "kernel_clip.hpp"
 #include "kernel_planes.hpp"
 #include "kernel_split.hpp"
 
 namespace raykiln::render {
 
-const BuildKernels kAvx2BuildKernels{count_planes, count_bins, find_codes, bound_bins,
-                                    split_references};
+const BuildKernels kAvx2BuildKernels{count_planes, count_planes_of_bin, count_bins, find_codes,
+                                    bound_bins, split_references, clip_references, clip_triangle};
 
 }  // namespace raykiln::render

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "key_sort.hpp"
-
 namespace raykiln::render {
 namespace {
 
@@ -65,14 +63,14 @@ void PlaneSearch::count_bins(Runs runs, const BinGrid& grid, bool parallel) {
 
 void PlaneSearch::choose_segments(const BinGrid& grid, const SweepInput& input, double leaf_cost) {
   segments_.clear();
-  const std::array<RoughCost, 3> costs = rough_costs(input.cell, context_.params);
+  rough_ = rough_costs(input.cell, context_.params);
   const std::size_t bins = grid.count();
   auto threshold = static_cast<float>(leaf_cost);
+  const auto budget = static_cast<std::int32_t>(std::min<std::uint64_t>(input.budget, input.n));
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto budget = static_cast<std::int32_t>(std::min<std::uint64_t>(input.budget, input.n));
     const float best_at_most = context_.kernels.bound_bins(
         {bins_.starts(a), bins_.ends(a), bins, input.n, budget,
-         costs[a], grid.edges_known(a)},
+         rough_[a], grid.edges_known(a)},
         bounds_[a]);
     threshold = std::min(threshold, best_at_most);
   }
@@ -83,7 +81,8 @@ void PlaneSearch::choose_segments(const BinGrid& grid, const SweepInput& input, 
       if (b.least[i] > threshold) continue;
       segments_.push_back({axis, i, static_cast<double>(b.least[i]),
                            static_cast<std::uint32_t>(b.n_left[i]),
-                           static_cast<std::uint32_t>(b.n_gone[i]), 0, 0});
+                           static_cast<std::uint32_t>(b.n_gone[i]),
+                           b.n_left[i] - b.n_gone[i + 1] > budget, 0, 0});
     }
   }
 }
@@ -98,30 +97,28 @@ void PlaneSearch::look_into_segments(Runs runs, const BinGrid& grid, const Sweep
       [](const Segment& a, const Segment& b) { return a.least < b.least; });
   first_.assign(1, *first);
   segments_.erase(first);
-  const double least = look_into(first_, runs, grid, input, leaf_cost, parallel, choosers, counts);
-  std::erase_if(segments_, [&](const Segment& s) { return s.least > least; });
+  KnownCosts known{leaf_cost, std::numeric_limits<double>::infinity()};
+  look_into(first_, runs, grid, input, known, parallel, choosers, counts);
+  std::erase_if(segments_, [&](const Segment& s) { return s.least > known.limit(s.beyond); });
   if (segments_.empty() || looks_for_stop(input.n)) return;
-  (void)look_into(segments_, runs, grid, input, least, parallel, choosers, counts);
+  look_into(segments_, runs, grid, input, known, parallel, choosers, counts);
 }
 
-double PlaneSearch::look_into(Segments& chosen, Runs runs, const BinGrid& grid,
-                              const SweepInput& input, double least, bool parallel,
-                              Choosers& choosers, BuildStats& counts) {
+void PlaneSearch::look_into(Segments& chosen, Runs runs, const BinGrid& grid,
+                            const SweepInput& input, KnownCosts& known, bool parallel,
+                            Choosers& choosers, BuildStats& counts) {
   place(chosen, grid.count(), runs.size());
   for (std::size_t a = 0; a < 3; ++a) {
     if (wanted_.has(a)) counts.events_swept += 2 * std::uint64_t{input.n};
   }
   gather(chosen, runs, parallel);
   for (const Segment& s : chosen) {
-    if (s.least > least) continue;
+    if (s.least > known.limit(s.beyond)) continue;
     const std::span<EventKey> keys = std::span(keys_).subspan(s.begin, s.end - s.begin);
-    if (looks_for_stop(keys.size())) return least;
-    counts.keys_sorted_passes += sort_keys(keys, kEventIdBits, sort_scratch_, &context_);
-    counts.events_swept += keys.size();
-    sweep(keys, input, static_cast<int>(s.axis), s.n_left, s.n_gone, choosers[s.axis]);
-    least = std::min(least, choosers[s.axis].result().best.cost);
+    if (looks_for_stop(keys.size())) return;
+    bin_search_.run(keys, input, s.n_left, s.n_gone, rough_[s.axis], known, choosers[s.axis], counts);
+    known.take(choosers[s.axis].result());
   }
-  return least;
 }
 
 // Room for the keys of the chosen bins, and one more a run for what is not wanted.

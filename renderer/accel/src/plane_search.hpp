@@ -1,13 +1,14 @@
 // The cheapest plane of a cell, exactly, without keeping events sorted.
 //
 // Large cells: counts in bins bound the cost of all planes of a bin from both sides; only bins that
-// may hold the cheapest plane have their events gathered, sorted and swept. Small cells: sides are
-// counted for every plane. Both give what a sweep over all sorted events gives, ties included.
+// may hold the cheapest plane have their events gathered and searched (bin_search.hpp). Small cells:
+// sides are counted for the planes that a few marks leave. Both give what a sweep over all sorted events gives, ties included.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "bin_search.hpp"
 #include "cell_bins.hpp"
 #include "reference.hpp"
 #include "sah_sweep.hpp"
@@ -16,7 +17,7 @@ namespace raykiln::render {
 
 class PlaneSearch {
  public:
-  explicit PlaneSearch(BuildContext& context) : context_(context) {}
+  explicit PlaneSearch(BuildContext& context) : context_(context), bin_search_(context) {}
 
   /// The first of the cheapest planes in the order of axis, position and planar_left first, among
   /// those within the budget; if its cost is not below `leaf_cost`, then no plane's is.
@@ -34,6 +35,7 @@ class PlaneSearch {
     double least = 0.0;         ///< no plane of the bin costs less
     std::uint32_t n_left = 0;   ///< extents that begin before the bin
     std::uint32_t n_gone = 0;   ///< extents that end before it
+    bool beyond = false;        ///< all its planes are beyond the budget
     std::size_t begin = 0, end = 0;  ///< in keys_
   };
   using Cursors = std::vector<std::size_t>;
@@ -45,9 +47,9 @@ class PlaneSearch {
   void choose_segments(const BinGrid& grid, const SweepInput& input, double leaf_cost);
   void look_into_segments(Runs runs, const BinGrid& grid, const SweepInput& input, double leaf_cost,
                           bool parallel, Choosers& choosers, BuildStats& counts);
-  // Gathers, sorts and sweeps `chosen`; gives the least cost known.
-  double look_into(Segments& chosen, Runs runs, const BinGrid& grid, const SweepInput& input,
-                   double least, bool parallel, Choosers& choosers, BuildStats& counts);
+  // Gathers and searches `chosen`.
+  void look_into(Segments& chosen, Runs runs, const BinGrid& grid, const SweepInput& input,
+                 KnownCosts& known, bool parallel, Choosers& choosers, BuildStats& counts);
   void place(Segments& chosen, std::size_t bins, std::size_t runs);
   void gather(Segments& chosen, Runs runs, bool parallel);
   void gather_run(std::span<const Reference> run, const BinCode* codes, Cursors& cursors);
@@ -65,7 +67,8 @@ class PlaneSearch {
   Cursors cursors_;                  ///< where the next key of each chosen bin goes
   std::size_t waste_ = 0;            ///< where keys that nobody asked for go, one place a run
   std::vector<EventKey> keys_;
-  std::vector<std::uint64_t> sort_scratch_;
+  BinSearch bin_search_;
+  std::array<RoughCost, 3> rough_{};
 };
 
 /// The same for up to kCountingMax references: counts the triangles on both sides of every plane.

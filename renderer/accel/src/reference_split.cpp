@@ -10,6 +10,23 @@ Bounds3f cut_off(Bounds3f cell, int axis, float position, bool above) {
   return cell;
 }
 
+static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+
+ClipQuery clip_query(const TriangleView& mesh, const Bounds3f& left, const Bounds3f& right,
+                     std::uint32_t axis) {
+  ClipQuery query{};
+  query.positions = mesh.positions.empty() ? nullptr : &mesh.positions[0].x;
+  query.triangles = mesh.triangles.empty() ? nullptr : mesh.triangles[0].data();
+  query.axis = axis;
+  for (int k = 0; k < 3; ++k) {
+    query.left[0][k] = left.lo[k];
+    query.left[1][k] = left.hi[k];
+    query.right[0][k] = right.lo[k];
+    query.right[1][k] = right.hi[k];
+  }
+  return query;
+}
+
 }  // namespace
 
 ReferenceSplit::ReferenceSplit(const BuildContext& context, const Bounds3f& cell,
@@ -17,8 +34,8 @@ ReferenceSplit::ReferenceSplit(const BuildContext& context, const Bounds3f& cell
     : context_(context),
       left_(cut_off(cell, plane.axis, plane.position, true)),
       right_(cut_off(cell, plane.axis, plane.position, false)),
-      parts_(left_, right_, plane.axis),
-      query_{plane.position, static_cast<std::uint32_t>(plane.axis), plane.planar_left ? 1U : 0U} {}
+      query_{plane.position, static_cast<std::uint32_t>(plane.axis), plane.planar_left ? 1U : 0U},
+      clip_(clip_query(context.mesh, left_, right_, query_.axis)) {}
 
 // What is on both sides is clipped behind each block, where it stands.
 ReferenceSplit::Sizes ReferenceSplit::run(std::span<const Reference> from, Reference* left,
@@ -52,27 +69,14 @@ ReferenceSplit::Sizes ReferenceSplit::count(std::span<const Reference> from) con
 }
 
 void ReferenceSplit::clip(SplitCounts& block, Reference* left, Reference* right) const {
-  constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
-  const std::span both(block.both, block.n_both);
-  bool nothing_left = false;
-  bool nothing_right = false;
-  for (const auto& place : both) context_.prefetch(left[place.left].triangle);
-  for (const auto& place : both) {
-    Reference& in_left = left[place.left];
-    Reference& in_right = right[place.right];
-    const std::uint32_t triangle = in_left.triangle;
-    const auto found = parts_.run(context_.corners(triangle), in_left, in_right);
-    in_left.triangle = found.left ? triangle : kNothing;
-    in_right.triangle = found.right ? triangle : kNothing;
-    nothing_left |= !found.left;
-    nothing_right |= !found.right;
-  }
+  const unsigned complete = context_.kernels.clip_references(clip_, block.both, block.n_both,
+                                                             words_of(left), words_of(right));
   const auto drop = [](Reference* side, std::uint32_t first, std::uint32_t& size) {
-    const auto is_nothing = [](const Reference& r) { return r.triangle == kNothing; };
+    const auto is_nothing = [](const Reference& r) { return r.triangle == kNoReference; };
     size = static_cast<std::uint32_t>(std::remove_if(side + first, side + size, is_nothing) - side);
   };
-  if (nothing_left) drop(left, both[0].left, block.left);
-  if (nothing_right) drop(right, both[0].right, block.right);
+  if ((complete & 1U) == 0) drop(left, block.both[0].left, block.left);
+  if ((complete & 2U) == 0) drop(right, block.both[0].right, block.right);
 }
 
 }  // namespace raykiln::render

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "build_context.hpp"
-#include "polygon_clip.hpp"
 #include "reference.hpp"
 #include "sah_sweep.hpp"
 
@@ -35,8 +34,8 @@ class ReferenceSplit {
 
   const BuildContext& context_;
   Bounds3f left_, right_;
-  PartsClip parts_;
   SplitQuery query_;
+  ClipQuery clip_;
 };
 
 }  // namespace raykiln::render

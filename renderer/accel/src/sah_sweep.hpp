@@ -1,6 +1,7 @@
 // The surface area heuristic and the sweep that finds its best plane on one axis.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -40,6 +41,21 @@ class CellCost {
     return k_t_ + k_i_over_area_ * (area_left * n_left + area_right * n_right);
   }
 
+  /// No plane between two positions costs less, when at least so many of n triangles are left and
+  /// right of it. Areas are linear between them, and the other triangles are on one side at least.
+  [[nodiscard]] double at_least(float from, float to, std::uint32_t n_left, std::uint32_t n_right,
+                                std::uint32_t n) const {
+    const double left = n_left, right = n_right;
+    const double rest = std::max(0.0, static_cast<double>(n) - left - right);
+    const auto at = [&](double p) {
+      const double area_left = cap_area_ + half_girth_ * (p - lo_);
+      const double area_right = cap_area_ + half_girth_ * (hi_ - p);
+      return area_left * left + area_right * right + std::min(area_left, area_right) * rest;
+    };
+    const double sides = std::min(at(static_cast<double>(from)), at(static_cast<double>(to)));
+    const double cost = (k_t_ + k_i_over_area_ * sides) * (1.0 - 0x1p-40);
+    return n_left == 0 || n_right == 0 ? cost * empty_factor_ : cost;
+  }
 
  private:
   double lo_, hi_, cap_area_, half_girth_, k_t_, k_i_over_area_, empty_factor_;
@@ -92,6 +108,8 @@ class PlaneChooser {
   }
 
   [[nodiscard]] const SweepResult& result() const { return result_; }
+  [[nodiscard]] const CellCost& cost() const { return cost_; }
+  [[nodiscard]] int axis() const { return axis_; }
 
  private:
   CellCost cost_;

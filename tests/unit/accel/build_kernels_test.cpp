@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "build_kernels.hpp"
+#include "bin_search.hpp"
 #include "cell_bins.hpp"
 #include "polygon_clip.hpp"
 #include "sah_sweep.hpp"
@@ -77,7 +78,7 @@ TEST_F(BuildKernelsAgree, OnThePlanesOfSmallCells) {
     one_.count_planes(q, by_one);
     other_->count_planes(q, by_other);
     ASSERT_EQ(by_one.size, by_other.size);
-    EXPECT_EQ(by_one.full_axes, by_other.full_axes);
+    EXPECT_EQ(by_one.operations, by_other.operations);
     EXPECT_EQ(std::memcmp(a.data(), b.data(), by_one.size * sizeof(a[0])), 0);
     planes += by_one.size;
   }
@@ -133,7 +134,87 @@ TEST_F(BuildKernelsAgree, OnBinsBoundsAndWhatIsFound) {
   }
 }
 
-TEST(PartsClip, AreThoseOfEachCellAlone) {
+// Of the planes at all sorted events the search must find what the sweep finds, ties and the cheapest
+// beyond the budget included, whatever it passes over.
+TEST(BinSearch, FindsWhatASweepOverAllEventsFinds) {
+  TestRandom random(74);
+  std::size_t splits = 0, beyond = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const RandomCell cell = random_cell(random, std::array{30U, 200U, 900U}[random.below(3)]);
+    const auto n = static_cast<std::uint32_t>(cell.references.size());
+    const render::SweepInput input{cell.box, n, random.below(3) == 0 ? random.below(n) : n};
+    const render::BuildParams params;
+    render::SerialTaskRunner runner;
+    const render::TriangleView mesh{};
+    render::BuildContext context(mesh, params, runner);
+    const int axis = static_cast<int>(random.below(3));
+    std::vector<render::EventKey> events;
+    for (const Reference& r : cell.references) {
+      const auto k = static_cast<std::size_t>(axis);
+      render::append_events(r.lo[k], r.hi[k], 0, events);
+    }
+    std::vector<render::EventKey> sorted = events;
+    std::sort(sorted.begin(), sorted.end());
+    const render::SweepResult expected = render::sweep_axis(sorted, axis, input, params);
+    const double leaf = params.k_i * n;
+    render::PlaneChooser chooser(axis, input, params);
+    render::BuildStats counts;
+    const auto rough = render::rough_costs(cell.box, params)[static_cast<std::size_t>(axis)];
+    render::BinSearch(context).run(events, input, 0, 0, rough, {leaf, std::numeric_limits<double>::infinity()}, chooser, counts);
+    const render::SweepResult& found = chooser.result();
+    if (expected.best.cost < leaf) {
+      ++splits;
+      EXPECT_EQ(found.best.cost, expected.best.cost);
+      EXPECT_EQ(found.best.position, expected.best.position);
+      EXPECT_EQ(found.best.planar_left, expected.best.planar_left);
+    } else {
+      EXPECT_FALSE(found.best.cost < leaf);
+    }
+    if (expected.unaffordable < std::min(leaf, expected.best.cost)) {
+      ++beyond;
+      EXPECT_LT(found.unaffordable, std::min(leaf, expected.best.cost));
+    } else {
+      EXPECT_FALSE(found.unaffordable < std::min(leaf, expected.best.cost));
+    }
+  }
+  EXPECT_GT(splits, 300U);
+  EXPECT_GT(beyond, 30U);
+}
+
+TEST_F(BuildKernelsAgree, OnTheSidesOfReferences) {
+  TestRandom random(75);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const RandomCell cell = random_cell(random, render::kSplitBlock);
+    const std::size_t n = cell.references.size();
+    const Reference& some = cell.references[random.below(static_cast<std::uint32_t>(n))];
+    const std::uint32_t axis = random.below(3);
+    const float at = std::array{some.lo[axis], some.hi[axis], 0.0F, random.uniform(-4.0F, 4.0F)}[random.below(4)];
+    const render::SplitQuery query{at, axis, random.below(2)};
+    std::vector<Reference> left(n + 1), right(n + 1), left_too(n + 1), right_too(n + 1);
+    render::SplitCounts counts{}, same{};
+    const auto* from = render::words_of(cell.references.data());
+    one_.split_references(query, from, static_cast<std::uint32_t>(n), render::words_of(left.data()),
+                          render::words_of(right.data()), counts);
+    other_->split_references(query, from, static_cast<std::uint32_t>(n), render::words_of(left_too.data()),
+                             render::words_of(right_too.data()), same);
+    ASSERT_EQ(counts.left, same.left);
+    ASSERT_EQ(counts.right, same.right);
+    ASSERT_EQ(counts.n_both, same.n_both);
+    EXPECT_EQ(std::memcmp(counts.both, same.both, counts.n_both * sizeof(counts.both[0])), 0);
+    EXPECT_EQ(std::memcmp(left.data(), left_too.data(), counts.left * sizeof(Reference)), 0);
+    EXPECT_EQ(std::memcmp(right.data(), right_too.data(), counts.right * sizeof(Reference)), 0);
+    std::size_t expected_left = 0, expected_both = 0;
+    for (const Reference& r : cell.references) {
+      const bool before = r.lo[axis] < at, behind = r.hi[axis] > at;
+      expected_left += before || (!behind && query.planar_left != 0) ? 1U : 0U;
+      expected_both += before && behind ? 1U : 0U;
+    }
+    EXPECT_EQ(counts.left, expected_left);
+    EXPECT_EQ(counts.n_both, expected_both);
+  }
+}
+
+TEST(ClippedParts, AreThoseOfEachCellAlone) {
   TestRandom random(73);
   std::uint32_t in_both = 0;
   for (int trial = 0; trial < 100'000; ++trial) {
@@ -160,20 +241,37 @@ TEST(PartsClip, AreThoseOfEachCellAlone) {
     Bounds3f left = cell;
     Bounds3f right = cell;
     left.hi[axis] = right.lo[axis] = plane;
-    Reference in_left{}, in_right{};
-    const auto found = render::PartsClip(left, right, axis).run(corners, in_left, in_right);
+    std::array<float, 9> words;
+    for (std::size_t c = 0; c < 9; ++c) words[c] = corners[c / 3][static_cast<int>(c % 3)];
+    const std::array<std::uint32_t, 3> triangle{0, 1, 2};
+    render::ClipQuery query{words.data(), triangle.data(), {}, {}, static_cast<std::uint32_t>(axis)};
+    for (int k = 0; k < 3; ++k) {
+      query.left[0][k] = left.lo[k];
+      query.left[1][k] = left.hi[k];
+      query.right[0][k] = right.lo[k];
+      query.right[1][k] = right.hi[k];
+    }
     const auto alone_left = render::clipped_bounds(corners, left);
     const auto alone_right = render::clipped_bounds(corners, right);
-    ASSERT_EQ(found.left, alone_left.has_value());
-    ASSERT_EQ(found.right, alone_right.has_value());
     const auto expect_box = [](const Bounds3f& box, const Reference& r) {
       const Reference expected = render::make_reference(box, 0);
       EXPECT_EQ(r.lo, expected.lo);
       EXPECT_EQ(r.hi, expected.hi);
     };
-    if (found.left) expect_box(*alone_left, in_left);
-    if (found.right) expect_box(*alone_right, in_right);
-    in_both += found.left && found.right ? 1U : 0U;
+    for (const render::BuildKernels* kernels : {&render::kAnyBuildKernels, render::avx2_build_kernels()}) {
+      if (kernels == nullptr) continue;
+      Reference in_left{}, in_right{};
+      const render::SplitCounts::Both place{0, 0};
+      const unsigned found = kernels->clip_references(query, &place, 1, render::words_of(&in_left),
+                                                      render::words_of(&in_right));
+      ASSERT_EQ((found & 1U) != 0, alone_left.has_value());
+      ASSERT_EQ((found & 2U) != 0, alone_right.has_value());
+      EXPECT_EQ(in_left.triangle, alone_left ? 0U : render::kNoReference);
+      EXPECT_EQ(in_right.triangle, alone_right ? 0U : render::kNoReference);
+      if (alone_left) expect_box(*alone_left, in_left);
+      if (alone_right) expect_box(*alone_right, in_right);
+    }
+    in_both += alone_left && alone_right ? 1U : 0U;
   }
   EXPECT_GT(in_both, 10'000U);
 }
