@@ -129,7 +129,8 @@ class PacketWalk {
         return;
       }
       if (node.word != 0) {
-        fetch(node.place >> 2);
+        fetch_leaf<V, kBlockFloats>(query_.blocks + kBlockFloats * (node.place >> 2),
+                                    node.word);
         waiting_[n_waiting_++] = walker;
         return;
       }
@@ -163,11 +164,6 @@ class PacketWalk {
         packet.credit + static_cast<std::int32_t>(packet.taken * kLeastShare - slots);
     packet.credit = then < kMostCredit ? then : kMostCredit;
     packet.taken = 0;
-  }
-
-  void fetch(std::size_t block) const {
-    const float* const first = query_.blocks + kBlockFloats * block;
-    for (std::size_t line = 0; line < kBlockFloats; line += 16) __builtin_prefetch(first + line);
   }
 
   // One step, see ScalarWalk::descend; 1 when it leads to a leaf. Without a branch, on the rays or

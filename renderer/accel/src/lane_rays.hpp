@@ -22,6 +22,21 @@ struct alignas(64) LeafRays {
   float tolerance[kW];  ///< of the fast test
 };
 
+/// Fetches the cache lines of so many floats ahead. Inline in any case, as must be all that does
+/// nothing else: gcc 12 takes a function that only fetches for one without effect, and leaves its
+/// calls out.
+template <std::size_t kFloats>
+[[gnu::always_inline]] inline void fetch_ahead(const float* first) {
+  for (std::size_t line = 0; line < kFloats; line += 16) __builtin_prefetch(first + line);
+}
+
+/// The first block of a leaf, and the second one where V fetches more.
+template <class V, std::size_t kBlockFloats>
+[[gnu::always_inline]] inline void fetch_leaf(const float* first, std::uint32_t count) {
+  fetch_ahead<kBlockFloats>(first);
+  if (V::kFetchesMore && count > 1) fetch_ahead<kBlockFloats>(first + kBlockFloats);
+}
+
 /// Lanes that hold the same triangle: the first one of a row.
 template <class V>
 struct Repeated : V {

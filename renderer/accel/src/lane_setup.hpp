@@ -101,6 +101,11 @@ class RaySource {
     for (std::size_t i = 0; i < n; ++i) batch.index[i] = next_ray_ + i;
     prepare(batch, n);
     next_ray_ += n;
+    if constexpr (V::kFetchesMore) {
+      // The rays that take this batch's place in the next round.
+      constexpr std::size_t kOthers = kW * (kBatches - 1);
+      if (left >= n + kOthers + kW) fetch_ahead<8 * kW>(query_.rays + 8 * (next_ray_ + kOthers));
+    }
   }
 
   // Enough rays with the same signs of direction and the same main axis.

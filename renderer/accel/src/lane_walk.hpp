@@ -195,11 +195,11 @@ class LaneWalk {
     V::prefetch_nodes(query_.nodes, group.node);
   }
 
-  void prefetch_blocks(const Group& group) const {
+  [[gnu::always_inline]] void prefetch_blocks(const Group& group) const {
     for (std::uint32_t rest = group.waiting; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-      const float* block = query_.blocks + kBlockFloats * group.leaf_place[lane];
-      for (std::size_t line = 0; line < kBlockFloats; line += 16) __builtin_prefetch(block + line);
+      fetch_leaf<V, kBlockFloats>(query_.blocks + kBlockFloats * group.leaf_place[lane],
+                                  group.leaf_count[lane]);
     }
   }
 

@@ -33,6 +33,7 @@ struct Doubles8 {
 
 struct Lanes16 {
   static constexpr std::uint32_t kWidth = 16;
+  static constexpr bool kFetchesMore = true;   ///< of leaves and rays, see fetch_leaf
   using F = __m512;
   using I = __m512i;
   using M = __mmask16;
