@@ -167,9 +167,39 @@ std::shared_ptr<const PreparedScene> matte_hall() {
   return b.prepare();
 }
 
-// The kernels shade diffuse vertices several at once, the scalar walk's one at a time.
+/// Mirrors and clear borders, flat ones and, on an octahedron of glass, smooth ones that often face away from the viewer.
+std::shared_ptr<const PreparedScene> room_of_axes() {
+  support::SceneBuilder b = support::mixed_room(kLargestExponent);
+  const auto glass = b.material(support::glass_material(1.4F, kLargestExponent));
+  Material half = support::glass_material(1.7F, kLargestExponent);
+  half.transparent = 0.6F;
+  const auto partly = b.material(half);
+  TriangleMesh& mesh = b.scene().mesh;
+  mesh.corner_normals.assign(mesh.triangles.size(), {kNoNormal, kNoNormal, kNoNormal});
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {-1.0F, 1.0F}) {
+      Vec3f normal(0.0F);
+      normal[axis] = sign;
+      mesh.positions.push_back(Vec3f(-0.1F, 0.1F, 0.2F) + 0.3F * normal);
+      mesh.normals.push_back(normal);
+    }
+  }
+  const auto first_normal = static_cast<std::uint32_t>(mesh.normals.size()) - 6;
+  for (std::uint32_t octant = 0; octant < 8; ++octant) {
+    std::array<std::uint32_t, 3> corner{octant & 1U, 2 + (octant >> 1 & 1U), 4 + (octant >> 2)};
+    const bool outwards = ((octant ^ octant >> 1 ^ octant >> 2) & 1U) != 0;
+    if (!outwards) std::swap(corner[0], corner[1]);
+    mesh.triangles.push_back({first + corner[0], first + corner[1], first + corner[2]});
+    mesh.corner_normals.push_back({first_normal + corner[0], first_normal + corner[1], first_normal + corner[2]});
+    mesh.material_ids.push_back(octant < 6 ? glass : partly);
+  }
+  return b.prepare();
+}
+
+// The kernels shade vertices on diffuse surfaces, mirrors and clear borders several at once, the scalar walk's one at a time.
 TEST_F(SameBytes, ForEveryKernelAndChoiceOfEmitters) {
-  for (const auto& scene : {scene_, matte_hall()}) {
+  for (const auto& scene : {scene_, matte_hall(), room_of_axes()}) {
     for (const Sampler sampler : {Sampler::kRandom, Sampler::kSobol}) {
       for (const EmitterChoice choice : {EmitterChoice::kPower, EmitterChoice::kTree}) {
         RenderSettings settings = small_settings();

@@ -21,4 +21,23 @@ struct LanePath {
   bool met_diffuse;
 };
 
+/// Hit, as it lies in memory.
+struct LaneHit {
+  float t;
+  std::uint32_t id;
+  float u, v;
+};
+
+/// EmitterReceiver, as it lies in memory.
+struct LaneReceiver {
+  float p[3], normal[3];
+  bool both_sides;
+};
+
+/// Corners of triangles.
+struct LaneMesh {
+  const float* positions;          ///< 3 floats each
+  const std::uint32_t* triangles;  ///< three positions each
+};
+
 }  // namespace raykiln::render

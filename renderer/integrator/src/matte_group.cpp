@@ -61,8 +61,7 @@ MatteGroup::MatteGroup(const Transport& transport) : mesh_(transport.mesh), max_
   batch_ = std::clamp(kBatchShadows / (lights_.size() + 1), std::size_t{8}, kBatch);
   chosen_.reserve(batch_);
 
-  query_.positions = &mesh_.positions.data()->x;
-  query_.triangles = mesh_.triangles.data()->data();
+  query_.mesh = {&mesh_.positions.data()->x, mesh_.triangles.data()->data()};
   query_.material_ids = mesh_.material_ids.data();
   query_.diffuse = diffuse_.data();
   query_.emission = emission_.data();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lane_surface.hpp"
+#include "matte_query.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -82,7 +83,7 @@ class MatteBatch {
       materials[i] = query_.material_ids[hit.id];
     }
     LaneVertex vertex;
-    vertex.point = points_on(query_, ids, wide(load<F32>(barycentrics[0])), wide(load<F32>(barycentrics[1])));
+    vertex.point = points_on(query_.mesh, ids, wide(load<F32>(barycentrics[0])), wide(load<F32>(barycentrics[1])));
     const V3f ng = narrow(vertex.point.ng);
     const V3 wo{wide(-load<F32>(d[0])), wide(-load<F32>(d[1])), wide(-load<F32>(d[2]))};
     const I32 front = __builtin_convertvector(dot(wide(ng), wo) >= 0.0, I32);
@@ -207,7 +208,7 @@ class MatteBatch {
     for (int i = 0; i < kLanes; ++i) materials[i] = query_.material_ids[triangles[i]];
     const Pair at = pair_of(query_.sobol, vertex.key, 2, 10);
     const F64 sheared = root(at.u);
-    const LanePoint point = points_on(query_, triangles, sheared * (1.0 - at.v), sheared * at.v);
+    const LanePoint point = points_on(query_.mesh, triangles, sheared * (1.0 - at.v), sheared * at.v);
 
     const V3 way = point.p - vertex.point.p;
     const F64 distance2 = dot(way, way);
@@ -262,12 +263,7 @@ class MatteBatch {
   void push_next(const LaneVertex& vertex, int i, const V3f& from, const V3f& wi, const V3& throughput, double pdf) {
     const double t[3] = {throughput.x[i], throughput.y[i], throughput.z[i]};
     const LanePath& before = path(i);
-    for (const double channel : t) {
-      if (channel - channel == 0.0) continue;  // finite
-      double* emitted = query_.emitted + before.slot * query_.emitted_stride;
-      for (int k = 0; k < 3; ++k) emitted[k] += t[k];
-      return;
-    }
+    if (poisons(t, query_.emitted + before.slot * query_.emitted_stride)) return;
     const std::size_t n = counts_.next++;
     query_.next_rays[n] = {{from.x[i], from.y[i], from.z[i]}, 0.0F, {wi.x[i], wi.y[i], wi.z[i]}, __builtin_inff()};
     query_.next_from[n] = ids_[i];

@@ -10,19 +10,6 @@
 
 namespace raykiln::render {
 
-/// Hit, as it lies in memory.
-struct LaneHit {
-  float t;
-  std::uint32_t id;
-  float u, v;
-};
-
-/// EmitterReceiver, as it lies in memory.
-struct LaneReceiver {
-  float p[3], normal[3];
-  bool both_sides;
-};
-
 /// The light of a shadow ray and whose it is.
 struct LaneLight {
   double light[3];
@@ -43,8 +30,7 @@ struct LaneDraw {
 /// Reads of one scene, and where the outcome goes. Vertices lie on flat triangles of diffuse, opaque materials
 /// that do not shine; directions are sampled by the cosine, one ray goes on from each, and all of them may go on.
 struct MatteQuery {
-  const float* positions;
-  const std::uint32_t* triangles;
+  LaneMesh mesh;
   const std::uint32_t* material_ids;
   const float* diffuse;   ///< of each material, 3 floats
   const float* emission;  ///< of each material, 3 floats

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "axis_group.hpp"
 #include "camera_group.hpp"
 #include "first_surface.hpp"
 #include "matte_group.hpp"
@@ -70,6 +71,7 @@ struct PathTracer::Scratch {
   std::vector<Hit> hits;
   ShadowQueue shadows;
   MatteGroup mattes;
+  AxisGroup axes;
   CameraGroup cameras;
   Material painted{};  ///< for layers
   GapWalk gaps{};
@@ -90,7 +92,7 @@ PathTracer::PathTracer(const TransportScene& scene, const CameraRays& camera,
     : camera_(camera) {
   const Transport transport = make_transport(scene, settings);
   scratch_.reset(new Scratch{transport, render::shading_loop(switches_for(transport)), {}, {}, {}, {},
-                             MatteGroup(transport), CameraGroup(camera, settings), {}});
+                             MatteGroup(transport), AxisGroup(transport), CameraGroup(camera, settings), {}});
 }
 
 PathTracer::~PathTracer() = default;
@@ -190,7 +192,7 @@ void PathTracer::shade(Call& call, std::size_t begin, std::size_t end) {
   const Clock::time_point start = Clock::now();
   const double traversal_before = stats.traversal_seconds;
   ShadingSinks sinks{call.results, scratch.shadows, scratch.next, stats, call.stop, {}};
-  scratch.loop.run(scratch.transport, {scratch.front, scratch.hits, begin, end, scratch.mattes}, sinks);
+  scratch.loop.run(scratch.transport, {scratch.front, scratch.hits, begin, end, scratch.mattes, scratch.axes}, sinks);
   scratch.shadows.flush(scratch.transport.tree, scratch.transport.settings.traversal, call.results,
                         stats, scratch.transport.gaps);
   stats.shading_seconds += seconds_since(start) - (stats.traversal_seconds - traversal_before);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "axis_group.hpp"
 #include "leave_out.hpp"
 #include "matte_group.hpp"
 #include "raykiln/shading/environment_light.hpp"
@@ -408,17 +409,30 @@ template <Switches kSwitches>
 void shade_range(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks) {
   const PathStream& front = range.front;
   const std::span<const PathState> states = front.states();
+  const auto shade_one = [&](std::size_t i) {
+    const EmitterReceiver* origin = transport.emitters_by_tree ? &front.origins[i] : nullptr;
+    const PathCone* cone = kSwitches.rich && transport.pyramids != nullptr ? &front.cones[i] : nullptr;
+    VertexShader<kSwitches>(transport, states[i], origin, sinks, cone).shade(front.rays()[i], range.hits[i - range.begin]);
+  };
+  constexpr bool kGroups = kSwitches.bounces && !kSwitches.reduced;
+  constexpr bool kAxes = kGroups && kSwitches.specular;
+  const auto shade_axes = [&] {
+    for (const std::uint32_t left : range.axes.shade(transport, range, sinks)) {
+      if (!sinks.stopped) shade_one(range.begin + left);
+    }
+  };
   for (std::size_t i = range.begin; i < range.end && !sinks.stopped; ++i) {
     (states[i].bounce == 0 ? sinks.stats.camera_rays : sinks.stats.bounce_rays) += 1;
     const Hit& hit = range.hits[i - range.begin];
-    if (kSwitches.bounces && !kSwitches.reduced && range.mattes.takes(hit, states[i])) {
+    if (kGroups && range.mattes.takes(hit, states[i])) {
       range.mattes.add(i, transport, range, sinks);
-      continue;
+    } else if (kAxes && range.axes.takes(hit, states[i])) {
+      if (range.axes.add(i - range.begin)) shade_axes();
+    } else {
+      shade_one(i);
     }
-    const EmitterReceiver* origin = transport.emitters_by_tree ? &front.origins[i] : nullptr;
-    const PathCone* cone = kSwitches.rich && transport.pyramids != nullptr ? &front.cones[i] : nullptr;
-    VertexShader<kSwitches>(transport, states[i], origin, sinks, cone).shade(front.rays()[i], hit);
   }
+  if (kAxes) shade_axes();
   range.mattes.shade(transport, range, sinks);
 }
 

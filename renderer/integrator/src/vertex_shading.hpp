@@ -22,6 +22,7 @@ struct ShadingSinks {
 };
 
 class MatteGroup;
+class AxisGroup;
 
 /// Paths `begin` .. `end` of `front`, whose rays came back with `hits`. Light samples are queued;
 /// the queue is flushed on the way when it is full.
@@ -29,7 +30,8 @@ struct ShadingRange {
   const PathStream& front;
   std::span<const Hit> hits;
   std::size_t begin = 0, end = 0;
-  MatteGroup& mattes;  ///< shades those of its kind
+  MatteGroup& mattes;  ///< shades those of its kind, and so does
+  AxisGroup& axes;
 };
 /// An instance of the loop.
 struct ShadingLoop {

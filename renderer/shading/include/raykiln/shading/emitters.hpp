@@ -71,6 +71,8 @@ class Emitters {
   /// False only if no point that sample() can find lies within a distance of `width` of the unit vector `axis`, as a
   /// unit vector from `from`: by the box of all emitting triangles.
   [[nodiscard]] bool may_lie_along(const Vec3d& from, const Vec3f& axis, double width) const;
+  /// That box.
+  [[nodiscard]] const Bounds3f& box() const { return box_; }
 
   /// Is the tree to be used where this is asked for?
   [[nodiscard]] bool by_tree(EmitterChoice choice) const {
