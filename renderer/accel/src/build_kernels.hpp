@@ -11,7 +11,7 @@ namespace raykiln::render {
 /// Bins across an axis of a cell; with the two of its faces they fit into a byte.
 inline constexpr std::size_t kMaxBins = 240;
 /// Up to so many references the sides of every plane are counted.
-inline constexpr std::size_t kCountingMax = 64;
+inline constexpr std::size_t kCountingMax = 32;
 
 /// References as the kernels see them: eight words each, lo.xyz, id, hi.xyz, nothing.
 using ReferenceWords = const float*;
