@@ -151,6 +151,8 @@ def test_a_server_s_job_is_told_of_like_one_rendered_here(api, folder, to, tmp_p
     line = [text for text in here.splitlines() if text.startswith("error ")]
     assert len(line) == 1 and "fewer than 64 samples" in line[0] and "--samples" in line[0], here
     assert line == [text for text in there.stderr.splitlines() if text.startswith("error ")]
+    warnings = [text for text in there.stderr.splitlines() if text.startswith("warning: ")]
+    assert len(warnings) == len(set(warnings)), "with the upload or with the job, not twice"
     quiet = raykiln("watch", there.stdout.split()[-1], *to, "--quiet")
     assert quiet.returncode == 0 and quiet.stderr == ""
 

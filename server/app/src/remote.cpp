@@ -50,6 +50,16 @@ std::optional<Remote> Remote::open(const CliOptions& options) {
   return std::nullopt;
 }
 
+std::string clean(const std::string& text) {
+  std::string out;
+  for (const char c : text) out.push_back(static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c);
+  return out;
+}
+
+void Remote::warn(const std::string& message) {
+  if (warned_.insert(message).second) std::cerr << "warning: " << clean(message) << '\n';
+}
+
 ExitCode Remote::fail(ExitCode code, const std::string& message) {
   std::cerr << "raykiln: " << message << '\n';
   failure_ = code;

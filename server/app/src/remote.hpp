@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "raykiln/api/job_json.hpp"
@@ -30,6 +31,10 @@ class Remote {
   [[nodiscard]] std::optional<JobView> follow(const std::string& job, ProgressLine& line,
                                               std::string* last_json);
 
+  /// Prints a warning, once: a scene's come with its upload and with its job. What a stranger named may hold anything, so
+  /// that controls are left out.
+  void warn(const std::string& message);
+
   [[nodiscard]] ExitCode failure() const { return failure_; }
   [[nodiscard]] const ServerAddress& address() const { return address_; }
   ExitCode fail(ExitCode code, const std::string& message);
@@ -39,7 +44,11 @@ class Remote {
 
   ServerAddress address_;
   ExitCode failure_ = ExitCode::kOk;
+  std::set<std::string> warned_;
 };
+
+/// Text without controls.
+[[nodiscard]] std::string clean(const std::string& text);
 
 [[nodiscard]] ProgressState progress_of(const JobView& job);
 [[nodiscard]] ExitCode exit_code_for_status(int status);

@@ -15,13 +15,6 @@ namespace {
 
 bool on_terminal() { return isatty(STDERR_FILENO) != 0; }
 
-/// Text in a column; what a stranger named may hold anything, so that controls are left out.
-std::string clean(const std::string& text) {
-  std::string out;
-  for (const char c : text) out.push_back(static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c);
-  return out;
-}
-
 /// Follows, prints the outcome, and fetches the pictures that are asked for.
 ExitCode see_through(Remote& remote, const CliOptions& options, const std::string& job) {
   std::string json;
@@ -33,7 +26,7 @@ ExitCode see_through(Remote& remote, const CliOptions& options, const std::strin
   if (options.json) std::cout << json << '\n';
   else if (!options.quiet) std::cerr << "job " << job << ' ' << end->state << '\n';
   if (!options.quiet) {
-    for (const std::string& warning : end->warnings) std::cerr << "warning: " << clean(warning) << '\n';
+    for (const std::string& warning : end->warnings) remote.warn(warning);
     if (end->accuracy) std::cerr << accuracy_line(*end) << '\n';
   }
   if (!end->approximation.empty()) {

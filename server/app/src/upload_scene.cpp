@@ -100,10 +100,10 @@ std::string content_type(SceneKind kind) {
   return "multipart/form-data; boundary=" + std::string(kBoundary);
 }
 
-void say_warnings(const CliOptions& options, const std::string& json) {
+void say_warnings(Remote& remote, const CliOptions& options, const std::string& json) {
   const auto scene = parse_scene(json);
   if (!scene || options.quiet) return;
-  for (const auto& warning : scene->warnings) std::cerr << "warning: " << warning << '\n';
+  for (const auto& warning : scene->warnings) remote.warn(warning);
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ std::optional<std::string> upload_scene(Remote& remote, const CliOptions& option
   const std::string target = "/v1/scenes/" + *id;
   auto known = HttpClient(remote.address()).request("GET", target);
   if (known && known->status == 200) {
-    say_warnings(options, known->body);
+    say_warnings(remote, options, known->body);
     return *id;
   }
   if (!known) {
@@ -144,7 +144,7 @@ std::optional<std::string> upload_scene(Remote& remote, const CliOptions& option
   }
   const auto response = remote.check(std::move(answer));
   if (!response) return std::nullopt;
-  say_warnings(options, response->body);
+  say_warnings(remote, options, response->body);
   return *id;
 }
 
