@@ -2,6 +2,7 @@
 
 #include "lane_choice.hpp"
 #include "raykiln/sampling/warp.hpp"
+#include "vertex_batch.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -47,22 +48,17 @@ AxisGroup::AxisGroup(const Transport& transport)
   chosen_.reserve(kBatch);
   left_.resize(kBatch);
 
-  query_.mesh = {&mesh_.positions.data()->x, mesh_.triangles.data()->data()};
+  read_scene(query_, transport);
   if (transport.normals && !mesh_.corner_normals.empty() && !mesh_.normals.empty()) {
     query_.normals = &mesh_.normals.data()->x;
     query_.corner_normals = mesh_.corner_normals.data()->data();
   }
-  query_.material_ids = mesh_.material_ids.data();
   query_.materials = materials_.data();
   query_.radiance_scaling = transport.settings.bsdf.light.radiance_scaling;
-  query_.roulette = transport.settings.bsdf.light.roulette;
-  query_.bounces_before_roulette = static_cast<std::uint32_t>(kFirstDrawAfter);
-  query_.roulette_factor = kRouletteFactor;
   query_.peak = cosine_power_pdf(0.0, kLargestExponent);
   query_.number = number_at;
   query_.side_dimension = static_cast<std::uint32_t>(Dimension::kFresnelChoice);
   query_.roulette_dimension = static_cast<std::uint32_t>(Dimension::kRoulette);
-  query_.emitted_stride = sizeof(PathResult) / sizeof(double);
 }
 
 void AxisGroup::read_materials(const std::vector<Material>& materials) {
@@ -83,7 +79,6 @@ void AxisGroup::read_lights(const Transport& transport) {
   }
   query_.point_lights = lights_.data();
   query_.point_light_count = transport.point_lights.size();
-  query_.emitter_sampling = transport.settings.emitter_sampling;
   put(query_.emitters_lo, Vec3d(transport.emitters.box().lo));
   put(query_.emitters_hi, Vec3d(transport.emitters.box().hi));
   query_.axis_width = kAxisWidth;
@@ -92,27 +87,12 @@ void AxisGroup::read_lights(const Transport& transport) {
 std::span<const std::uint32_t> AxisGroup::shade(const Transport& transport, const ShadingRange& range,
                                                 ShadingSinks& sinks) {
   if (chosen_.empty()) return {};
-  PathStream& next = sinks.next;
-  const std::size_t before = next.size();
   AxisQuery query = query_;
-  query.rays = reinterpret_cast<const LaneRay*>(range.front.rays().data() + range.begin);
-  query.hits = reinterpret_cast<const LaneHit*>(range.hits.data());
-  query.paths = reinterpret_cast<const LanePath*>(range.front.states().data() + range.begin);
-  query.chosen = chosen_.data();
-  query.chosen_count = chosen_.size();
-  next.resize(before + chosen_.size(), transport.emitters_by_tree);
-  query.next_rays = reinterpret_cast<LaneRay*>(next.rays().data() + before);
-  query.next_paths = reinterpret_cast<LanePath*>(next.states().data() + before);
-  query.next_from = next.from().data() + before;
-  query.next_origins =
-      transport.emitters_by_tree ? reinterpret_cast<LaneReceiver*>(next.origins.data() + before) : nullptr;
+  open_batch(query, chosen_, transport, range, sinks);
   query.left = left_.data();
-  query.emitted = &sinks.results.data()->emitted.x;
   AxisCounts counts{};
   kernel_(query, counts);
-  chosen_.clear();
-  next.resize(before + counts.next, transport.emitters_by_tree);
-  sinks.stats.roulette_ends += counts.roulette_ends;
+  close_batch(counts, chosen_, transport, sinks);
   return {left_.data(), counts.left};
 }
 

@@ -1,11 +1,11 @@
 // What passes between the tracer and the kernels for several vertices on mirrors and clear borders at once. Plain data
-// and pointers only: see matte_query.hpp.
+// and pointers only: see vertex_query.hpp.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "lane_path.hpp"
+#include "vertex_query.hpp"
 
 namespace raykiln::render {
 
@@ -15,47 +15,28 @@ struct LaneAxisMaterial {
   double transparent, index;
 };
 
-/// Reads of one scene, and where the outcome goes. Fresnel's equations, one ray goes on from each vertex, and all of
-/// them may go on.
-struct AxisQuery {
-  LaneMesh mesh;
+/// Reads of one scene, and where the outcome goes. Fresnel's equations; all paths may go on.
+struct AxisQuery : VertexQuery {
   const float* normals;                 ///< 3 floats each
   const std::uint32_t* corner_normals;  ///< three a triangle; null where nothing is interpolated
-  const std::uint32_t* material_ids;
   const LaneAxisMaterial* materials;
 
-  bool radiance_scaling, roulette;
-  std::uint32_t bounces_before_roulette;
-  double roulette_factor;
+  bool radiance_scaling;
   double peak;  ///< density of the lobe along its axis
   /// The random number of a dimension at the path's vertex.
   double (*number)(const LanePath& path, std::uint32_t dimension);
   std::uint32_t side_dimension, roulette_dimension;
 
-  bool emitter_sampling;
   double emitters_lo[3], emitters_hi[3];  ///< the box of all emitters
   double axis_width;                      ///< kAxisWidth
   const double* point_lights;             ///< places, 3 doubles each
   std::size_t point_light_count;
 
-  const LaneRay* rays;
-  const LaneHit* hits;
-  const LanePath* paths;
-  const std::uint32_t* chosen;  ///< which of them are vertices of this kind
-  std::size_t chosen_count;
-
-  LaneRay* next_rays;  ///< room for one a vertex, and so for what goes with it
-  LanePath* next_paths;
-  std::uint32_t* next_from;    ///< the triangles that they leave
-  LaneReceiver* next_origins;  ///< null where emitters are not drawn from a tree
-  std::uint32_t* left;         ///< those of `chosen` that a light may lie along an axis of: not shaded
-  double* emitted;             ///< of slot 0; poisoned by throughputs that are not finite
-  std::size_t emitted_stride;
+  std::uint32_t* left;  ///< those of `chosen` that a light may lie along an axis of: not shaded
 };
 
-struct AxisCounts {
-  std::size_t next, left;
-  std::uint64_t roulette_ends;
+struct AxisCounts : VertexCounts {
+  std::size_t left;
 };
 
 using AxisKernel = void (*)(const AxisQuery& query, AxisCounts& counts);

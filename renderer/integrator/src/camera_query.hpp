@@ -1,5 +1,5 @@
 // What passes between the tracer and the kernels that shoot several camera rays at once. Plain data and pointers
-// only: see matte_query.hpp.
+// only: see vertex_query.hpp.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Rays and paths as the kernels for several at once read and write them. Plain data only: see matte_query.hpp.
+// Rays and paths as the kernels for several at once read and write them. Plain data only: see vertex_query.hpp.
 #pragma once
 
 #include <cstdint>

@@ -1,19 +1,13 @@
 #include "matte_group.hpp"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "lane_choice.hpp"
 #include "raykiln/shading/punctual_light.hpp"
+#include "vertex_batch.hpp"
 
 namespace raykiln::render {
 namespace {
-
-static_assert(sizeof(LaneHit) == sizeof(Hit) && offsetof(LaneHit, id) == offsetof(Hit, id) &&
-              offsetof(LaneHit, u) == offsetof(Hit, u));
-static_assert(sizeof(LaneReceiver) == sizeof(EmitterReceiver) &&
-              offsetof(LaneReceiver, both_sides) == offsetof(EmitterReceiver, both_sides));
-static_assert(offsetof(PathResult, emitted) == 0 && sizeof(PathResult) % sizeof(double) == 0);
 
 /// Beyond, tables that are made once a task would cost more than they save.
 constexpr std::size_t kMostMaterials = 4096;
@@ -61,16 +55,11 @@ MatteGroup::MatteGroup(const Transport& transport) : mesh_(transport.mesh), max_
   batch_ = std::clamp(kBatchShadows / (lights_.size() + 1), std::size_t{8}, kBatch);
   chosen_.reserve(batch_);
 
-  query_.mesh = {&mesh_.positions.data()->x, mesh_.triangles.data()->data()};
-  query_.material_ids = mesh_.material_ids.data();
+  read_scene(query_, transport);
   query_.diffuse = diffuse_.data();
   query_.emission = emission_.data();
-  query_.roulette = transport.settings.bsdf.light.roulette;
-  query_.bounces_before_roulette = static_cast<std::uint32_t>(kFirstDrawAfter);
-  query_.roulette_factor = kRouletteFactor;
   query_.sobol = transport.settings.sampler == Sampler::kSobol;
   query_.sobol_third = sobol::kThird.of_digits.front().data();
-  query_.emitted_stride = sizeof(PathResult) / sizeof(double);
 }
 
 void MatteGroup::read_materials(const std::vector<Material>& materials) {
@@ -93,8 +82,7 @@ void MatteGroup::read_lights(const Transport& transport) {
   query_.point_lights = lights_.data();
   query_.point_light_count = lights_.size();
   const Emitters& emitters = transport.emitters;
-  query_.emitter_sampling = transport.settings.emitter_sampling;
-  if (!query_.emitter_sampling) return;
+  if (!transport.settings.emitter_sampling) return;
   query_.emitters = emitters.triangles().data();
   query_.cumulative = emitters.cumulative().data();
   query_.emitter_count = emitters.triangles().size();
@@ -107,32 +95,17 @@ void MatteGroup::read_lights(const Transport& transport) {
 
 void MatteGroup::shade(const Transport& transport, const ShadingRange& range, ShadingSinks& sinks) {
   if (chosen_.empty()) return;
-  PathStream& next = sinks.next;
-  const std::size_t before = next.size();
   MatteQuery query = query_;
-  query.rays = reinterpret_cast<const LaneRay*>(range.front.rays().data() + range.begin);
-  query.hits = reinterpret_cast<const LaneHit*>(range.hits.data());
-  query.paths = reinterpret_cast<const LanePath*>(range.front.states().data() + range.begin);
-  query.chosen = chosen_.data();
-  query.chosen_count = chosen_.size();
-  next.resize(before + chosen_.size(), transport.emitters_by_tree);
-  query.next_rays = reinterpret_cast<LaneRay*>(next.rays().data() + before);
-  query.next_paths = reinterpret_cast<LanePath*>(next.states().data() + before);
-  query.next_from = next.from().data() + before;
-  query.next_origins =
-      transport.emitters_by_tree ? reinterpret_cast<LaneReceiver*>(next.origins.data() + before) : nullptr;
+  open_batch(query, chosen_, transport, range, sinks);
   const ShadowQueue::Room room = sinks.shadows.open(chosen_.size() * (lights_.size() + 1));
   query.shadow_rays = reinterpret_cast<LaneRay*>(room.rays);
   query.shadow_lights = reinterpret_cast<LaneLight*>(room.waiting);
   query.shadow_from = room.from;
   query.shadow_to = room.to;
-  query.emitted = &sinks.results.data()->emitted.x;
   MatteCounts counts{};
   kernel_(query, counts);
-  chosen_.clear();
-  next.resize(before + counts.next, transport.emitters_by_tree);
+  close_batch(counts, chosen_, transport, sinks);
   sinks.shadows.close(room, counts.shadows);
-  sinks.stats.roulette_ends += counts.roulette_ends;
   sinks.stats.lights_at_hits += counts.lights_at_hits;
   if (!sinks.shadows.full()) return;
   sinks.shadows.flush(transport.tree, transport.settings.traversal, sinks.results, sinks.stats);

@@ -1,12 +1,11 @@
 // What passes between the shading of one vertex at a time and the kernels that shade several at once, each
-// of which is compiled for one instruction set. Plain data and pointers only, as in renderer/accel: an inline
-// function here would be compiled once with AVX and once without, and the linker would keep either.
+// of which is compiled for one instruction set. Plain data and pointers only: see vertex_query.hpp.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "lane_path.hpp"
+#include "vertex_query.hpp"
 
 namespace raykiln::render {
 
@@ -28,16 +27,12 @@ struct LaneDraw {
 };
 
 /// Reads of one scene, and where the outcome goes. Vertices lie on flat triangles of diffuse, opaque materials
-/// that do not shine; directions are sampled by the cosine, one ray goes on from each, and all of them may go on.
-struct MatteQuery {
-  LaneMesh mesh;
-  const std::uint32_t* material_ids;
+/// that do not shine; directions are sampled by the cosine, and all paths may go on.
+struct MatteQuery : VertexQuery {
   const float* diffuse;   ///< of each material, 3 floats
   const float* emission;  ///< of each material, 3 floats
 
-  bool emitter_sampling, roulette, sobol;
-  std::uint32_t bounces_before_roulette;
-  double roulette_factor;
+  bool sobol;
   const std::uint32_t* sobol_third;  ///< sobol::kThird, 16 words for each four digits of an index
 
   const std::uint32_t* emitters;  ///< triangles
@@ -50,27 +45,15 @@ struct MatteQuery {
   const LanePointLight* point_lights;
   std::size_t point_light_count;
 
-  const LaneRay* rays;
-  const LaneHit* hits;
-  const LanePath* paths;
-  const std::uint32_t* chosen;  ///< which of them are vertices of this kind
-  std::size_t chosen_count;
-
-  LaneRay* next_rays;  ///< room for one a vertex, and so for what goes with it
-  LanePath* next_paths;
-  std::uint32_t* next_from;  ///< the triangles that they leave
-  LaneReceiver* next_origins;  ///< null where emitters are not drawn from a tree
-  LaneRay* shadow_rays;        ///< room for one a vertex and light, and one more a vertex
+  LaneRay* shadow_rays;  ///< room for one a vertex and light, and one more a vertex
   LaneLight* shadow_lights;
   std::uint32_t* shadow_from;  ///< the triangles on which they begin
   std::uint32_t* shadow_to;    ///< those on which they end; kNoHit stands there
-  double* emitted;  ///< of slot 0; poisoned by throughputs that are not finite
-  std::size_t emitted_stride;
 };
 
-struct MatteCounts {
-  std::size_t next, shadows;
-  std::uint64_t roulette_ends, lights_at_hits;
+struct MatteCounts : VertexCounts {
+  std::size_t shadows;
+  std::uint64_t lights_at_hits;
 };
 
 using MatteKernel = void (*)(const MatteQuery& query, MatteCounts& counts);
