@@ -1,4 +1,5 @@
 // Triangles on which rays begin and end: no walk meets them, and all walks still agree.
+#include "same_counts.hpp"
 #include "support/accel_testing.hpp"
 
 namespace raykiln::test {
@@ -32,13 +33,6 @@ Ends ends_of(const render::KdTree& tree, const std::vector<Ray>& rays, render::T
     if (i % 16 == 2) std::swap(ends.from[i], ends.to[i]);
   }
   return ends;
-}
-
-void expect_same_counts(const TraversalCounters& a, const TraversalCounters& b) {
-  EXPECT_EQ(a.unusable_rays, b.unusable_rays);
-  EXPECT_EQ(a.node_steps, b.node_steps);
-  EXPECT_EQ(a.leaf_visits, b.leaf_visits);
-  EXPECT_EQ(a.block_tests, b.block_tests);
 }
 
 void expect_left_out(const render::KdTree& tree, const std::vector<Ray>& rays, render::TriangleTest test, const Ends& ends) {

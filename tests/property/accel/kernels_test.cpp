@@ -1,5 +1,6 @@
 // The lane kernels are the scalar walk: the same hits and the same counts, whatever else is in the
 // stream, at every scale a float can have.
+#include "same_counts.hpp"
 #include "support/accel_testing.hpp"
 
 namespace raykiln::test {
@@ -20,15 +21,6 @@ std::vector<TestMesh> meshes() {
   doubled.append(doubled);
   // The first two have more nodes than trees that sorted rays walk in packets to the end.
   return {soup(2500, 1, 2.0F), terrain(40), soup(300, 2, 2.0F), slivers(150), hair(20, 8), doubled};
-}
-
-// What all kernels must share.
-void expect_same_counts(const TraversalCounters& a, const TraversalCounters& b) {
-  EXPECT_EQ(a.rays, b.rays);
-  EXPECT_EQ(a.unusable_rays, b.unusable_rays);
-  EXPECT_EQ(a.node_steps, b.node_steps);
-  EXPECT_EQ(a.leaf_visits, b.leaf_visits);
-  EXPECT_EQ(a.block_tests, b.block_tests);
 }
 
 struct Answers {
