@@ -29,19 +29,26 @@ RenderSettings small_settings() {
   return settings;
 }
 
+/// What threads add to, under a lock.
+struct Outcome {
+  Film film{kWidth, kHeight};
+  RenderStats stats;
+};
+
 /// One tile's tasks in order, cut from all the blocks of the job.
 void render_one_tile(const PreparedScene& scene, const RenderSettings& settings,
                      const PixelRect& rect, std::span<const SampleBlock> blocks, const Cut& cut,
-                     Film& film, std::mutex& mutex) {
+                     Outcome& outcome, std::mutex& mutex) {
   for (std::size_t first = 0; first < blocks.size(); first += cut.blocks_a_task) {
     const auto some = blocks.subspan(first, std::min(cut.blocks_a_task, blocks.size() - first));
     const TileResult result = render_tile(scene, settings, rect, some, {});
     const std::lock_guard lock(mutex);
-    merge(film, result);
+    merge(outcome.film, result);
+    add(outcome.stats, result.stats);
   }
 }
 
-void render_into(Film& film, const PreparedScene& scene, const RenderSettings& settings,
+void render_into(Outcome& outcome, const PreparedScene& scene, const RenderSettings& settings,
                  std::span<const SampleBlock> blocks, const Cut& cut) {
   std::vector<PixelRect> tiles;
   for (int y = 0; y < kHeight; y += cut.tile) {
@@ -56,17 +63,22 @@ void render_into(Film& film, const PreparedScene& scene, const RenderSettings& s
       // Backwards and interleaved: the order of tiles must not matter either.
       for (std::size_t i = tiles.size(); i-- > 0;) {
         if (i % static_cast<std::size_t>(cut.threads) != static_cast<std::size_t>(t)) continue;
-        render_one_tile(scene, settings, tiles[i], blocks, cut, film, mutex);
+        render_one_tile(scene, settings, tiles[i], blocks, cut, outcome, mutex);
       }
     });
   }
 }
 
+Outcome render_counted(const PreparedScene& scene, const RenderSettings& settings, std::uint64_t samples,
+                       const Cut& cut) {
+  Outcome outcome;
+  render_into(outcome, scene, settings, blocks_for(samples), cut);
+  return outcome;
+}
+
 Film render(const PreparedScene& scene, const RenderSettings& settings, std::uint64_t samples,
             const Cut& cut) {
-  Film film(kWidth, kHeight);
-  render_into(film, scene, settings, blocks_for(samples), cut);
-  return film;
+  return render_counted(scene, settings, samples, cut).film;
 }
 
 void expect_same(const Film& a, const Film& b, const std::string& what) {
@@ -102,21 +114,21 @@ TEST_F(SameBytes, ForThreadsTilesAndTaskLengths) {
 TEST_F(SameBytes, SixteenAndSixteenAgainstThirtyTwo) {
   const RenderSettings settings = small_settings();
   const Film whole = render(*scene_, settings, 32, {});
-  Film parts(kWidth, kHeight);
+  Outcome parts;
   const auto blocks = blocks_for(32);
   const auto split = std::find_if(blocks.begin(), blocks.end(),
                                   [](const SampleBlock& b) { return b.first == 16; });
   render_into(parts, *scene_, settings, std::span(blocks.begin(), split), {2, 7, 3});
   render_into(parts, *scene_, settings, std::span(split, blocks.end()), {1, 1000, 1});
-  expect_same(whole, parts, "16 + 16");
+  expect_same(whole, parts.film, "16 + 16");
 }
 
 TEST_F(SameBytes, AnIncompleteBlockRenderedAnewLeavesNoTrace) {
   const RenderSettings settings = small_settings();
-  Film film = render(*scene_, settings, 21, {});
+  Outcome outcome = render_counted(*scene_, settings, 21, {});
   const std::vector<SampleBlock> again{sample_block(5)};
-  render_into(film, *scene_, settings, again, {});
-  expect_same(render(*scene_, settings, 32, {}), film, "21 extended to 32");
+  render_into(outcome, *scene_, settings, again, {});
+  expect_same(render(*scene_, settings, 32, {}), outcome.film, "21 extended to 32");
 }
 
 TEST_F(SameBytes, OfSobolPointsToo) {
@@ -125,10 +137,10 @@ TEST_F(SameBytes, OfSobolPointsToo) {
   const Film reference = render(*scene_, settings, 37, {});
   expect_same(reference, render(*scene_, settings, 37, {7, 5, 2}), "7 threads, tile 5, 2 blocks a task");
   expect_same(reference, render(*scene_, settings, 37, {2, 1000, 5}), "2 threads, one tile, 5 blocks a task");
-  Film film = render(*scene_, settings, 21, {});
+  Outcome outcome = render_counted(*scene_, settings, 21, {});
   const std::vector<SampleBlock> again{sample_block(5)};
-  render_into(film, *scene_, settings, again, {});
-  expect_same(render(*scene_, settings, 32, {}), film, "21 extended to 32");
+  render_into(outcome, *scene_, settings, again, {});
+  expect_same(render(*scene_, settings, 32, {}), outcome.film, "21 extended to 32");
   const auto plain = render(*scene_, small_settings(), 37, {}).plane("beauty");
   EXPECT_NE(reference.plane("beauty"), plain);
 }
@@ -197,20 +209,39 @@ std::shared_ptr<const PreparedScene> room_of_axes() {
   return b.prepare();
 }
 
+/// What is to be shot or shaded several at once.
+struct Lanes {
+  bool camera_rays = false, mattes = false, axes = false;
+};
+void expect_lanes(const RenderStats& stats, const Lanes& expected) {
+  EXPECT_EQ(stats.lane_camera_rays, expected.camera_rays ? stats.camera_rays : 0U);
+  EXPECT_EQ(stats.lane_mattes > 0, expected.mattes);
+  EXPECT_EQ(stats.lane_axes > 0, expected.axes);
+}
+
 // The kernels shade vertices on diffuse surfaces, mirrors and clear borders several at once, the scalar walk's one at a time.
 TEST_F(SameBytes, ForEveryKernelAndChoiceOfEmitters) {
-  for (const auto& scene : {scene_, matte_hall(), room_of_axes()}) {
+  struct Room {
+    std::shared_ptr<const PreparedScene> scene;
+    bool mattes, axes;  ///< are there vertices of this kind?
+  };
+  const std::vector<Room> rooms{{scene_, true, false}, {matte_hall(), true, false}, {room_of_axes(), true, true}};
+  for (const auto& [scene, mattes, axes] : rooms) {
     for (const Sampler sampler : {Sampler::kRandom, Sampler::kSobol}) {
       for (const EmitterChoice choice : {EmitterChoice::kPower, EmitterChoice::kTree}) {
         RenderSettings settings = small_settings();
         settings.sampler = sampler;
         settings.emitter_choice = choice;
         settings.traversal = Traversal::kScalar;
-        const Film reference = render(*scene, settings, 8, {});
-        EXPECT_GT(reference.plane("beauty")[0], 0.0);
+        const Outcome reference = render_counted(*scene, settings, 8, {});
+        EXPECT_GT(reference.film.plane("beauty")[0], 0.0);
+        expect_lanes(reference.stats, {});
         for (const Traversal kernel : {Traversal::kAvx2, Traversal::kAvx512}) {
           settings.traversal = kernel;  // what the processor cannot run becomes the scalar one
-          expect_same(reference, render(*scene, settings, 8, {2, 9, 1}), std::string(name(kernel)));
+          const Outcome other = render_counted(*scene, settings, 8, {2, 9, 1});
+          expect_same(reference.film, other.film, std::string(name(kernel)));
+          const bool lanes = is_available(kernel);
+          expect_lanes(other.stats, {lanes, lanes && mattes, lanes && axes});
         }
       }
     }
@@ -235,14 +266,16 @@ TEST_F(SameBytes, ForEveryKernelWhereverPathsBegin) {
       starts[i].sampler = sampler;
       for (const std::uint64_t index : {std::uint64_t{3}, std::uint64_t{9}, std::uint64_t{1} << 33}) {
         const std::vector<SampleBlock> blocks{sample_block(index)};
-        Film reference(kWidth, kHeight);
+        Outcome reference;
         starts[i].traversal = Traversal::kScalar;
         render_into(reference, *scene_, starts[i], blocks, {});
+        EXPECT_EQ(reference.stats.lane_camera_rays, 0U);
         for (const Traversal kernel : {Traversal::kAvx2, Traversal::kAvx512}) {
           starts[i].traversal = kernel;
-          Film film(kWidth, kHeight);
-          render_into(film, *scene_, starts[i], blocks, {1, 7, 1});
-          expect_same(reference, film, "start " + std::to_string(i) + ", " + std::string(name(kernel)));
+          Outcome other;
+          render_into(other, *scene_, starts[i], blocks, {1, 7, 1});
+          expect_same(reference.film, other.film, "start " + std::to_string(i) + ", " + std::string(name(kernel)));
+          EXPECT_EQ(other.stats.lane_camera_rays, is_available(kernel) ? other.stats.camera_rays : 0U);
         }
       }
     }

@@ -92,6 +92,7 @@ std::span<const std::uint32_t> AxisGroup::shade(const Transport& transport, cons
   query.left = left_.data();
   AxisCounts counts{};
   kernel_(query, counts);
+  sinks.stats.lane_axes += chosen_.size() - counts.left;
   close_batch(counts, chosen_, transport, sinks);
   return {left_.data(), counts.left};
 }

@@ -104,6 +104,7 @@ void MatteGroup::shade(const Transport& transport, const ShadingRange& range, Sh
   query.shadow_to = room.to;
   MatteCounts counts{};
   kernel_(query, counts);
+  sinks.stats.lane_mattes += chosen_.size();
   close_batch(counts, chosen_, transport, sinks);
   sinks.shadows.close(room, counts.shadows);
   sinks.stats.lights_at_hits += counts.lights_at_hits;

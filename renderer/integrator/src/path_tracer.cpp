@@ -48,6 +48,9 @@ void add(RenderStats& stats, const RenderStats& other) {
   stats.gap_rays += other.gap_rays;
   stats.closest_calls += other.closest_calls;
   stats.short_calls_while_many_live += other.short_calls_while_many_live;
+  stats.lane_camera_rays += other.lane_camera_rays;
+  stats.lane_mattes += other.lane_mattes;
+  stats.lane_axes += other.lane_axes;
   stats.traversal_seconds += other.traversal_seconds;
   stats.shading_seconds += other.shading_seconds;
   stats.traversal += other.traversal;
@@ -112,6 +115,7 @@ void PathTracer::admit(Call& call) {
   const auto first_slot = static_cast<std::uint32_t>(call.started);
   if (scratch_->cameras.ready()) {
     scratch_->cameras.shoot(starts, first_slot, front);
+    call.stats.lane_camera_rays += count;
   } else {
     shoot(starts, first_slot, front);
   }
