@@ -221,8 +221,8 @@ class FastLeafVisit {
   template <class L, class Rays>
   static FastRays<L> fast_ray(const Rays& rays, std::uint32_t lane) {
     const std::size_t z = rays.main_axis[lane];
-    const std::size_t x = z == 2 ? 0 : z + 1;
-    const std::size_t y = x == 2 ? 0 : x + 1;
+    const std::size_t x = axis_after(z);
+    const std::size_t y = axis_after(x);
     return {L::set1(rays.o[x][lane]),  L::set1(rays.o[y][lane]), L::set1(rays.o[z][lane]),
             L::set1(rays.sx[lane]),    L::set1(rays.sy[lane]),   L::set1(rays.inv_d[z][lane]),
             L::set1(rays.t_min[lane]), L::set1(rays.t_max[lane]),
@@ -232,8 +232,8 @@ class FastLeafVisit {
 
   template <class R, class Ready>
   static FastRays<R> fast_rays(const Ready& rays, std::size_t z) {
-    const std::size_t x = z == 2 ? 0 : z + 1;
-    const std::size_t y = x == 2 ? 0 : x + 1;
+    const std::size_t x = axis_after(z);
+    const std::size_t y = axis_after(x);
     return {V::load(rays.o[x]),  V::load(rays.o[y]), V::load(rays.o[z]),
             V::load(rays.sx),    V::load(rays.sy),   V::load(rays.inv_d[z]),
             V::load(rays.t_min), V::load(rays.t_max),

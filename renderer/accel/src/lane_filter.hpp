@@ -132,9 +132,11 @@ inline std::uint32_t edges_agree(const FilterValues<V>& f, typename V::F e) {
 }
 
 /// Of V::kWidth triangles of a block of kLeafWidth, of which `block` points to the first, those that may be
-/// hit; if kSure, also those that are, for certain.
+/// hit; if kSure, also those that are, for certain. Only lanes of `asked` are of interest: padding has
+/// edge functions of zero, which rule nothing out. Where edge functions rule out all of them and `go_on` is 0,
+/// intervals are not looked at: less work, but a branch.
 template <class V, int kLeafWidth, bool kSure>
-inline Found may_be_hit(const FilterRay<V>& ray, const float* block) {
+[[gnu::always_inline]] inline Found may_be_hit(const FilterRay<V>& ray, const float* block, std::uint32_t asked, std::uint32_t go_on) {
   using F = typename V::F;
   FilterValues<V> f;
   const auto [x, y] = form_edges<V, kLeafWidth>(ray, block, f);
@@ -143,8 +145,8 @@ inline Found may_be_hit(const FilterRay<V>& ray, const float* block) {
   // m (h + ...) first: where a product of corners overflows, so does this, and the lane passes.
   f.mh = V::mul(m, V::mul_add(V::set1(kFilterCorner), m, h));
   const F e = V::mul_add(f.mh, V::set1(kFilterEdge), V::set1(kFilterUnderflow));
-  const std::uint32_t lanes = edges_allow<V>(f, e);
-  if (lanes == 0) return {0, 0};
+  const std::uint32_t lanes = edges_allow<V>(f, e) & asked;
+  if ((lanes | go_on) == 0) return {0, 0};
   const IntervalBits interval = compare_interval<V, kSure>(ray, f, e);
   return {lanes & ~interval.outside, kSure ? interval.inside & edges_agree<V>(f, e) : 0};
 }

@@ -26,14 +26,15 @@ class LeafVisit {
   static constexpr bool kInDouble = true;
   static constexpr bool kHasEnds = kAnyHit;  ///< LeafRays::end is looked at
 
-  LeafVisit(const LaneQuery& query, LaneCounts& counts) : query_(query), counts_(counts) {}
+  LeafVisit(const LaneQuery& query, LaneCounts& counts)
+      : query_(query), counts_(counts), go_on_(kAnyHit && query.node_count <= kFewNodes ? 0 : ~0U) {}
 
   /// The ray `index`, which is in `lane`, at a leaf of `count` blocks from `place` on. True when it
   /// is done.
   [[gnu::always_inline]] bool one_ray(Rays& rays, std::uint32_t lane, std::size_t index,
                                       std::uint32_t place, std::uint32_t count) const {
     if (count >= kMany) return many_blocks(rays, lane, index, place, count);
-    return few_blocks(rays, lane, index, place, count);
+    return blocks_of_lane(rays, lane, index, place, count);
   }
 
   /// The rays of `lanes`, all with the same main axis. A bit for each that is done.
@@ -48,7 +49,7 @@ class LeafVisit {
       if (count < kMany) {
         for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
           const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-          if (few_blocks(rays, lane, rays.index[lane], place, count)) done |= 1U << lane;
+          if (few_blocks<true>(rays, lane, rays.index[lane], place, count)) done |= 1U << lane;
         }
         return done;
       }
@@ -72,39 +73,70 @@ class LeafVisit {
   static constexpr std::uint32_t kInDoubles = (1U << D::kWidth) - 1U;
   static constexpr std::uint32_t kOneInDoubles = (1U << One::kWidth) - 1U;
   static constexpr std::uint32_t kMany = 8;  ///< blocks of a leaf
+  /// Whether rays in lanes leave the filter after the edge functions, as those of packets do. With AVX-512 only
+  /// any-hit rays in trees of up to kFewNodes: elsewhere the branch is guessed wrongly too often.
+  static constexpr bool kExits = !V::kGoesOn;
+  static constexpr std::uint64_t kFewNodes = 1U << 17;
   /// About so many lanes of a block hold a triangle.
   static constexpr std::uint32_t kTrianglesABlock = 3 * kLeafWidth / 4;
 
+  // Out of line: within the walk's loop its registers cost the steps.
+  [[gnu::noinline]] bool blocks_of_lane(Rays& rays, std::uint32_t lane, std::size_t index,
+                                        std::uint32_t place, std::uint32_t count) const {
+    return few_blocks<kExits>(rays, lane, index, place, count);
+  }
+
+  // Most leaves have one block or two: these are done without a loop, whose constants a call would
+  // have to save.
+  template <bool kExit>
   bool few_blocks(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
                   std::uint32_t count) const {
-    const float* const first = query_.blocks + kBlockFloats * place;
-    std::uint32_t b = 0;
+    if (count == 1) return one_block<kExit>(filter_ray<B>(rays, lane), rays, lane, index, place);
     if constexpr (kTwice) {
-      if (count > 1) {
-        const auto ray = filter_ray<Twice>(rays, lane);
-        for (; b + 1 < count; b += 2) {
-          const auto both = candidates<Twice>(ray, first + kBlockFloats * b, rays, lane);
-          ++counts_.block_tests;
-          if (decide(rays, lane, index, place + b, {both.maybe & 0xFFU, both.sure & 0xFFU})) return true;
-          ++counts_.block_tests;
-          if (decide(rays, lane, index, place + b + 1, {both.maybe >> 8, both.sure >> 8})) return true;
-        }
-      }
-      if (b == count) return false;
+      if (count == 2) return two_blocks<kExit>(filter_ray<Twice>(rays, lane), rays, lane, index, place);
     }
-    const auto ray = filter_ray<B>(rays, lane);
-    for (; b < count; ++b) {
-      ++counts_.block_tests;
-      const float* const block = first + kBlockFloats * b;
-      Found found{0, 0};
-      for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
-        const Found part = candidates<B>(ray, block + at, rays, lane);
-        found.maybe |= part.maybe << at;
-        found.sure |= part.sure << at;
+    return some_blocks<kExit>(rays, lane, index, place, count);
+  }
+
+  template <bool kExit>
+  [[gnu::noinline]] bool some_blocks(Rays& rays, std::uint32_t lane, std::size_t index, std::uint32_t place,
+                                     std::uint32_t count) const {
+    if constexpr (kTwice) {
+      const auto ray = filter_ray<Twice>(rays, lane);
+      for (; count > 1; count -= 2, place += 2) {
+        if (two_blocks<kExit>(ray, rays, lane, index, place)) return true;
       }
-      if (decide(rays, lane, index, place + b, found)) return true;
+    }
+    if (count == 0) return false;
+    const auto ray = filter_ray<B>(rays, lane);
+    for (; count != 0; --count, ++place) {
+      if (one_block<kExit>(ray, rays, lane, index, place)) return true;
     }
     return false;
+  }
+
+  template <bool kExit>
+  [[gnu::always_inline]] bool two_blocks(const FilterRay<Twice>& ray, Rays& rays, std::uint32_t lane,
+                                         std::size_t index, std::uint32_t place) const {
+    const auto both = candidates<Twice, kExit>(ray, query_.blocks + kBlockFloats * place, rays, lane);
+    ++counts_.block_tests;
+    if (decide(rays, lane, index, place, {both.maybe & 0xFFU, both.sure & 0xFFU})) return true;
+    ++counts_.block_tests;
+    return decide(rays, lane, index, place + 1, {both.maybe >> 8, both.sure >> 8});
+  }
+
+  template <bool kExit>
+  [[gnu::always_inline]] bool one_block(const FilterRay<B>& ray, Rays& rays, std::uint32_t lane,
+                                        std::size_t index, std::uint32_t place) const {
+    const float* const block = query_.blocks + kBlockFloats * place;
+    ++counts_.block_tests;
+    Found found{0, 0};
+    for (std::uint32_t at = 0; at < kLeafWidth; at += B::kWidth) {
+      const Found part = candidates<B, kExit>(ray, block + at, rays, lane);
+      found.maybe |= part.maybe << at;
+      found.sure |= part.sure << at;
+    }
+    return decide(rays, lane, index, place, found);
   }
 
   // A leaf of many blocks holds long triangles that are mostly missed by far: one error bound serves
@@ -126,7 +158,7 @@ class LeafVisit {
       }
       if (allowed == 0) {
         counts_.block_tests += n;
-      } else if (few_blocks(rays, lane, index, place + b, n)) {
+      } else if (blocks_of_lane(rays, lane, index, place + b, n)) {
         return true;
       }
     }
@@ -154,12 +186,12 @@ class LeafVisit {
     FilterRay<R> ray = filter_rays<R>(rays, axis);
     std::uint32_t done = 0;
     for (std::uint32_t i = 0; i < kLeafWidth && ids[i] != kLaneNoHit; ++i) {
-      const Found filtered = may_be_hit<R, kLeafWidth, kAnyHit>(ray, block + i);
-      std::uint32_t found = filtered.maybe & lanes & ~done;
-      if (found == 0) continue;
       const auto id = V::set1(ids[i]);
-      found &= ~V::bits(V::eq(V::load(rays.known), id));
-      if constexpr (kHasEnds) found &= ~V::bits(V::eq(V::load(rays.end), id));
+      std::uint32_t asked = lanes & ~done & ~V::bits(V::eq(V::load(rays.known), id));
+      if constexpr (kHasEnds) asked &= ~V::bits(V::eq(V::load(rays.end), id));
+      const Found filtered = may_be_hit<R, kLeafWidth, kAnyHit>(ray, block + i, asked, 0);
+      std::uint32_t found = filtered.maybe;
+      if (found == 0) continue;
       if constexpr (kAnyHit) {
         const std::uint32_t sure = found & filtered.sure;
         for (std::uint32_t rest = sure; rest != 0; rest &= rest - 1) {
@@ -179,7 +211,7 @@ class LeafVisit {
   template <class Ready>
   [[gnu::noinline]] std::uint32_t decide_rays(Ready& rays, std::uint32_t found, std::size_t z, std::uint32_t place,
                             std::uint32_t i) const {
-    const std::size_t axes[3] = {next(z), next(next(z)), z};
+    const std::size_t axes[3] = {axis_after(z), axis_after(axis_after(z)), z};
     const float* const triangle = query_.blocks + kBlockFloats * place + i;
     const std::uint32_t id = id_of(triangle);
     std::uint32_t done = 0;
@@ -228,7 +260,7 @@ class LeafVisit {
               std::uint32_t found) const {
     counts_.exact_tests += static_cast<std::uint32_t>(__builtin_popcount(found));
     const std::size_t z = rays.main_axis[lane];
-    const std::size_t axes[3] = {next(z), next(next(z)), z};
+    const std::size_t axes[3] = {axis_after(z), axis_after(axis_after(z)), z};
     const auto all = [](float value) { return One::set1(static_cast<double>(value)); };
     ExactRay<One> ray = {all(rays.o[axes[0]][lane]),     all(rays.o[axes[1]][lane]),
                        all(rays.o[z][lane]),           One::set1(rays.shear_x[lane]),
@@ -251,8 +283,6 @@ class LeafVisit {
     }
     return false;
   }
-
-  static std::size_t next(std::size_t axis) { return axis == 2 ? 0 : axis + 1; }
 
   static std::uint32_t id_of(const float* triangle) {
     return *reinterpret_cast<const std::uint32_t*>(triangle + kIds);
@@ -282,10 +312,10 @@ class LeafVisit {
   }
 
   template <class L>
-  static FilterRay<L> filter_ray(const Rays& rays, std::uint32_t lane) {
+  [[gnu::always_inline]] static FilterRay<L> filter_ray(const Rays& rays, std::uint32_t lane) {
     const std::size_t z = rays.main_axis[lane];
-    const std::size_t x = z == 2 ? 0 : z + 1;
-    const std::size_t y = x == 2 ? 0 : x + 1;
+    const std::size_t x = axis_after(z);
+    const std::size_t y = axis_after(x);
     return {L::set1(rays.o[x][lane]),  L::set1(rays.o[y][lane]), L::set1(rays.o[z][lane]),
             L::set1(rays.sx[lane]),    L::set1(rays.sy[lane]),   L::set1(rays.inv_d[z][lane]),
             L::set1(rays.t_min[lane]), L::set1(rays.t_max[lane]),
@@ -294,8 +324,8 @@ class LeafVisit {
 
   template <class R>
   static FilterRay<R> filter_rays(const Rays& rays, std::size_t z) {
-    const std::size_t x = z == 2 ? 0 : z + 1;
-    const std::size_t y = x == 2 ? 0 : x + 1;
+    const std::size_t x = axis_after(z);
+    const std::size_t y = axis_after(x);
     return {V::load(rays.o[x]),  V::load(rays.o[y]), V::load(rays.o[z]),
             V::load(rays.sx),    V::load(rays.sy),   V::load(rays.inv_d[z]),
             V::load(rays.t_min), V::load(rays.t_max),
@@ -303,18 +333,17 @@ class LeafVisit {
   }
 
   // Those of a block, or of the part of it that begins at `block`, that have to be decided.
-  template <class L>
-  static Found candidates(const FilterRay<L>& ray, const float* block, const Rays& rays, std::uint32_t lane) {
-    Found found = may_be_hit<L, kLeafWidth, kAnyHit>(ray, block);
-    if (found.maybe == 0) return {0, 0};
+  template <class L, bool kExit>
+  [[gnu::always_inline]] Found candidates(const FilterRay<L>& ray, const float* block, const Rays& rays, std::uint32_t lane) const {
     const auto* const ids = reinterpret_cast<const std::uint32_t*>(block + kIds);
-    found.maybe &= worth_deciding<L>(ids, rays.known[lane]);
-    if constexpr (kHasEnds) found.maybe &= ~L::bits(L::eq(L::load(ids), L::set1(rays.end[lane])));
-    return found;
+    std::uint32_t asked = worth_deciding<L>(ids, rays.known[lane]);
+    if constexpr (kHasEnds) asked &= ~L::bits(L::eq(L::load(ids), L::set1(rays.end[lane])));
+    return may_be_hit<L, kLeafWidth, kAnyHit>(ray, block, asked, kExit ? 0 : go_on_);
   }
 
   const LaneQuery& query_;
   LaneCounts& counts_;
+  const std::uint32_t go_on_;
 };
 
 }  // namespace

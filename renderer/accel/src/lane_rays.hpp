@@ -37,6 +37,9 @@ template <class V, std::size_t kBlockFloats>
   if (V::kFetchesMore && count > 1) fetch_ahead<kBlockFloats>(first + kBlockFloats);
 }
 
+/// 0 follows 2. Without a branch: rays in neighbouring lanes have main axes as they come.
+inline std::size_t axis_after(std::size_t axis) { return 9U >> 2 * axis & 3U; }
+
 /// Lanes that hold the same triangle: the first one of a row.
 template <class V>
 struct Repeated : V {
