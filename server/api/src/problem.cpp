@@ -60,7 +60,6 @@ Problem problem_of(const Error& error) {
   problem.retry_after_s = error.retry_after_s;
   const bool temporary = problem.status == 429 || problem.status == 503;
   if (!problem.retry_after_s && temporary) problem.retry_after_s = 2;
-  if (error.code == "image_not_ready") problem.retry_after_s = 1;
   if (error.code == "invalid_request") {
     problem.errors.push_back({error.where, "invalid_value", error.message});
     problem.where.clear();

@@ -153,7 +153,7 @@ class Scheduler::Core {
   void end_at_once(LiveJob& job);
   void archived(const JobId& id, const Status& saved, const std::shared_ptr<JobImage>& image,
                 std::optional<PictureError> error);
-  void picture_lost(const JobId& id);
+  void picture_lost(const JobId& id, const Error& why);
 
   // core_extend.cpp
   [[nodiscard]] Result<SubmitJob> extended(ExtendJob extension);

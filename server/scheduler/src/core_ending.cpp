@@ -7,6 +7,15 @@
 #include "raykiln/scheduler/judge_picture.hpp"
 
 namespace raykiln::server {
+namespace {
+
+/// The job has ended as it was told to; that its picture is gone is said beside.
+void lose_picture(JobSnapshot& job, const Error& why) {
+  job.image_revision = 0;
+  job.warnings.push_back({"image_not_stored", "the picture could not be stored and is lost: " + why.message, ""});
+}
+
+}  // namespace
 
 /// From here on nothing is merged. The state follows when no task is in flight and the picture stored.
 void Scheduler::Core::begin_ending(LiveJob& job, JobEvent event, std::optional<Error> error) {
@@ -83,8 +92,8 @@ void Scheduler::Core::end_at_once(LiveJob& job) {
     film.reset();
     of_film.reset();
     if (!saved) parts_.log.error("image_not_stored", {{"job", id}, {"why", saved.error().message}});
-    post([this, id, bytes, lost = !saved.ok()] {
-      if (lost) picture_lost(id);
+    post([this, id, bytes, saved] {
+      if (!saved) picture_lost(id, saved.error());
       active_film_bytes_ -= bytes;
       pump();
     });
@@ -92,14 +101,14 @@ void Scheduler::Core::end_at_once(LiveJob& job) {
   archived(id, success(), image, look_at_picture(*job.film, samples_area));
 }
 
-/// The record of a job that has ended names no picture that nobody keeps.
-void Scheduler::Core::picture_lost(const JobId& id) {
+/// The record of a job that has ended names no picture that nobody keeps, and says why.
+void Scheduler::Core::picture_lost(const JobId& id, const Error& why) {
   std::erase_if(images_, [&](const JobImagePtr& old) { return old->job == id; });
   auto record = parts_.store.job(id);
   if (!record) return;  // forgotten meanwhile
   auto snapshot = decode_job(record->content);
   if (!snapshot) return;
-  snapshot->image_revision = 0;
+  lose_picture(*snapshot, why);
   record->revision = ++snapshot->revision;
   record->content = encode_job(*snapshot);
   if (auto stored = parts_.store.put_job(*record); !stored) {
@@ -122,7 +131,7 @@ void Scheduler::Core::archived(const JobId& id, const Status& saved, const std::
       error = saved.error();
     }
     let_go(std::exchange(job->film, nullptr));  // else the final state would name a picture that nobody keeps
-    job->snapshot.image_revision = 0;
+    lose_picture(job->snapshot, saved.error());
   }
   if (saved && image) {
     image->revision = job->snapshot.revision + 1;

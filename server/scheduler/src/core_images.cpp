@@ -23,6 +23,10 @@ std::shared_ptr<JobImage> framed(const JobSnapshot& job) {
 Error image_not_ready() {
   return {ErrorKind::kNotFound, "image_not_ready", "there is no picture yet", "", 1};
 }
+/// To ask again would not help: it was cancelled before its first sample, or its picture could not be stored.
+Error ended_without_image() {
+  return {ErrorKind::kNotFound, "image_not_ready", "the job ended without a picture", ""};
+}
 
 }  // namespace
 
@@ -65,7 +69,7 @@ void Scheduler::Core::image(const JobId& id, const std::string& layer,
   }
   auto snapshot = snapshot_of(id);
   if (!snapshot) return reply(snapshot.error());
-  if (snapshot->image_revision == 0) return reply(image_not_ready());
+  if (snapshot->image_revision == 0) return reply(is_final(snapshot->state) ? ended_without_image() : image_not_ready());
   if (auto known = remembered(id, snapshot->image_revision, layers)) return reply(std::move(known));
   LiveJob* job = find(id);
   if (job == nullptr) return load_image(*snapshot, reply);

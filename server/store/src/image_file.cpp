@@ -132,7 +132,7 @@ Status write_image_file(const std::filesystem::path& path, const StoredImage& im
 
 Result<StoredImage> read_image_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorKind::kNotFound, "image_not_ready", "there is no picture yet", ""};
+  if (!file) return Error{ErrorKind::kNotFound, "image_not_ready", "there is no picture", ""};
   Head head;
   Head expected;
   file.read(reinterpret_cast<char*>(&head), sizeof head);

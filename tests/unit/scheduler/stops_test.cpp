@@ -220,14 +220,14 @@ TEST(Stops, LayersOfALargePictureAreGatheredForABoundedNumber) {
   expect_parts_of_light(**stored);
 }
 
-// Its final state comes before the store has it: should that fail, the record does not go on naming it.
-TEST(Stops, AFullStoreTakesThePictureOfALargeCancelledJob) {
+/// The record of a job that was cancelled while the store had no room for its picture.
+JobSnapshot cancelled_without_room(int judged_at_once_px) {
   const TempDirectory directory;
   Config config;
   config.store.max_bytes = 300'000;
   ServerRig rig(directory.path(), 2, {}, config);
   rig.scheduler.reset();
-  rig.judged_at_once_px = 0;
+  rig.judged_at_once_px = judged_at_once_px;
   rig.start();
   JobRequest request = small_job(rig.add_scene("a room")->scene.record.id, 1'000'000);
   request.width = 160;
@@ -237,9 +237,24 @@ TEST(Stops, AFullStoreTakesThePictureOfALargeCancelledJob) {
   (void)rig.cancel(id);
   EXPECT_EQ(rig.wait_final(id).state, JobState::kCancelled);
   EXPECT_FALSE(answer_of<JobImagePtr>([&](auto reply) { rig.scheduler->image(id, "all", reply); }));
-  const auto after = answer_of<JobSnapshot>([&](auto reply) { rig.scheduler->get(id, reply); });
-  EXPECT_EQ(after->image_revision, 0U);
   EXPECT_EQ(rig.image(id).error().code, "image_not_ready");
+  EXPECT_FALSE(rig.image(id).error().retry_after_s) << "it will never be there";
+  return *rig.get(id);
+}
+
+// The final state of a large one comes before the store has its picture: should that fail, the record does not go on
+// naming it. Whoever looks for the picture is told why it is gone.
+TEST(Stops, AFullStoreTakesThePictureOfACancelledJobAndSaysSo) {
+  for (const int judged_at_once_px : {0, 65'536}) {
+    const JobSnapshot after = cancelled_without_room(judged_at_once_px);
+    EXPECT_EQ(after.image_revision, 0U);
+    EXPECT_GT(after.progress.samples_done, 0U);
+    ASSERT_FALSE(after.warnings.empty());
+    EXPECT_EQ(after.warnings.back().code, "image_not_stored");
+    EXPECT_EQ(after.warnings.back().message, "the picture could not be stored and is lost: the store has no room for the picture");
+    EXPECT_EQ(std::count_if(after.warnings.begin(), after.warnings.end(),
+                            [](const JobWarning& w) { return w.code == "image_not_stored"; }), 1);
+  }
 }
 
 TEST(Stops, AdaptiveJobsDoNotDependOnThreadsAndAreMadeAgainFromTheirSamples) {
