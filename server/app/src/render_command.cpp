@@ -82,7 +82,7 @@ void say_tree(const JobSnapshot& job) {
   if (job.request.tree == TreeBudget{} || !tree) return;
   std::cerr << "tree: " << tree->references << " references, " << tree->bytes << " bytes, " << tree->peak_bytes
             << " while it was built"
-            << (tree->budget_reached ? "; a bound stopped useful splits, the picture is exact" : "") << '\n';
+            << (tree->budget_reached ? "; a bound stopped at least one useful split, the picture is exact" : "") << '\n';
 }
 
 ExitCode write_pictures(const CliOptions& options, const LocalPicture& picture,
