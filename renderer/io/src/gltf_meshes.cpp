@@ -111,7 +111,7 @@ void GltfMeshes::note_ignored(const JsonAt& at, const JsonAt& attributes) {
     at.warn(ImportWarningCode::kIgnoredFeature, "morph targets are ignored: the rest pose is shown");
   }
   if (attributes.has("COLOR_0")) {
-    at.warn(ImportWarningCode::kIgnoredFeature, "vertex colours are ignored");
+    at.warn(ImportWarningCode::kIgnoredFeature, "vertex colours and their alpha are ignored");
   }
 }
 

@@ -1,4 +1,5 @@
 // What the glTF and GLB readers accept.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -408,6 +409,21 @@ TEST(Gltf, WhatIsNotShownIsListed) {
   EXPECT_EQ(count_of(imported, Warn::kIgnoredExtension), 2U);
   EXPECT_EQ(count_of(imported, Warn::kIgnoredFeature), 2U);
   EXPECT_EQ(count_of(imported, Warn::kIgnoredTexture), 2U);
+}
+
+// Alpha of corners would fade the sheet by the format; it is left out, and that is said.
+TEST(Gltf, VertexColoursAndTheirAlphaAreListed) {
+  GltfBuilder builder;
+  const std::vector<float> faded{1, 0, 0, 0, 0, 1, 0, 0.5F, 0, 0, 1, 0};
+  const int positions = builder.vec3({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const int colours = builder.accessor(builder.view(faded), 5126, 3, "VEC4");
+  builder.primitive({{"attributes", {{"POSITION", positions}, {"COLOR_0", colours}}}, {"material", 0}});
+  builder.root["materials"] = Json::array({{{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.5, 0.5, 0.75}}}}}});
+  const auto imported = scene_of(builder);
+  EXPECT_EQ(count_of(imported, Warn::kIgnoredFeature), 1U);
+  EXPECT_TRUE(std::any_of(imported.report.warnings.begin(), imported.report.warnings.end(),
+                          [](const ImportWarning& w) { return w.message == "vertex colours and their alpha are ignored"; }));
+  EXPECT_EQ(imported.scene.materials[imported.scene.mesh.material_ids[0]].coverage, 0.75F) << "that of the material";
 }
 
 TEST(Gltf, FarAwaySinglePrecisionIsListed) {
