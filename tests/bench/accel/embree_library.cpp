@@ -153,7 +153,7 @@ class Library final : public EmbreeLibrary {
   Library& operator=(const Library&) = delete;
 
   // The library stays loaded until the process ends: it starts threads of its own.
-  bool load(const std::string& path) {
+  bool load(const std::string& path, int threads) {
     library_ = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library_ == nullptr) return false;
     const bool whole =
@@ -173,7 +173,8 @@ class Library final : public EmbreeLibrary {
         find("rtcIntersect1", embree_.intersect1) && find("rtcIntersect16", embree_.intersect16) &&
         find("rtcOccluded1", embree_.occluded1);
     if (!whole) return false;
-    device_ = embree_.new_device("threads=1");
+    const std::string configuration = "threads=" + std::to_string(threads);
+    device_ = embree_.new_device(configuration.c_str());
     return device_ != nullptr && embree_.device_property(device_, kVersionProperty) / 10000 == 4;
   }
 
@@ -223,9 +224,9 @@ class Library final : public EmbreeLibrary {
 
 }  // namespace
 
-std::unique_ptr<EmbreeLibrary> load_embree(const std::string& path) {
+std::unique_ptr<EmbreeLibrary> load_embree(const std::string& path, int threads) {
   auto library = std::make_unique<Library>();
-  if (library->load(path)) return library;
+  if (library->load(path, threads)) return library;
   const char* const reason = dlerror();
   std::fprintf(stderr, "%s: %s\n", path.c_str(), reason != nullptr ? reason : "not Embree 4");
   return nullptr;

@@ -15,7 +15,7 @@ namespace raykiln::bench {
 /// The values are Embree's.
 enum class EmbreeQuality : int { kMedium = 1, kHigh = 2 };
 
-/// The triangles of a mesh in an Embree scene of one thread.
+/// The triangles of a mesh in an Embree scene. Rays are traced on the thread that asks.
 class EmbreeScene {
  public:
   virtual ~EmbreeScene() = default;
@@ -37,7 +37,8 @@ class EmbreeLibrary {
   [[nodiscard]] virtual std::string version() const = 0;
 };
 
-/// nullptr, and the reason on standard error, when the file is no Embree 4.
-[[nodiscard]] std::unique_ptr<EmbreeLibrary> load_embree(const std::string& path);
+/// It builds on `threads` threads, the caller's among them. nullptr, and the reason on standard error, when the file is
+/// no Embree 4.
+[[nodiscard]] std::unique_ptr<EmbreeLibrary> load_embree(const std::string& path, int threads);
 
 }  // namespace raykiln::bench
