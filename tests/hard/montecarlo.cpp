@@ -380,7 +380,7 @@ double mse_of_pixel(const PreparedScene& scene, double truth, std::uint64_t n) {
   return mean_square(errors);
 }
 
-// From 128 samples on all 8 replicates hold as many, 16 and more. Bands: 4 sigma of a fit through four points
+// From 128 samples on all 4 replicates hold as many, 32 and more. Bands: 4 sigma of a fit through four points
 // whose errors scatter by 14 %, and 0.1 for what Owen's rates leave out (n^-3 log n; edges of any direction).
 TEST(M08, SlopeOfScrambledSequences) {
   Row row("M08", "scrambled Sobol' points: smooth radiance over a pixel, edge through it; n = 128 .. 8192, 100 seeds",

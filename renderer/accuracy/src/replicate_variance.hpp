@@ -9,7 +9,7 @@ namespace raykiln::render {
 /// depend on each other does not matter, nor how many of them each has.
 struct ReplicateVariance {
   double variance = 0.0;
-  double degrees = 0.0;  ///< of freedom, about: 7 for 8 replicates of equal size; 0: nothing is known
+  double degrees = 0.0;  ///< of freedom, about: 3 for 4 replicates of equal size; 0: nothing is known
 };
 
 /// With the shares w of the samples, m the replicates' means and M their weighted mean: the sum of

@@ -17,8 +17,8 @@ struct LanePathKeys {
 inline LanePathKeys path_keys(std::uint64_t seed_word, U64 pixel, U64 sample, bool sobol) {
   U64 word = sample, point{};
   if (sobol) {
-    const U64 index = ((sample >> 7) << 4) | (sample & 15U);
-    word = ~(((sample >> 4) & 7U) | ((index >> 32) << 3));
+    const U64 index = ((sample >> 6) << 4) | (sample & 15U);
+    word = ~(((sample >> 4) & 3U) | ((index >> 32) << 2));
     point = (std::uint64_t{1} << 32) |
             __builtin_convertvector(reversed(__builtin_convertvector(index, U32)), U64);
   }

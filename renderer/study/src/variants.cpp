@@ -31,7 +31,7 @@ constexpr EffectSet kSurfaces{Effect::kWatertightTriangles};
 
 std::vector<Knob> knobs() {
   return {
-      {"sampler=sobol", "scrambled Sobol' points in 8 replicates instead of independent numbers", {},
+      {"sampler=sobol", "scrambled Sobol' points in 4 replicates instead of independent numbers", {},
        [](Variant& v) { v.settings.sampler = Sampler::kSobol; }},
       {"depth=2", "paths end after 2 reflections instead of by roulette", kBounces, depth(2)},
       {"depth=4", "paths end after 4 reflections", kBounces, depth(4)},

@@ -30,13 +30,13 @@ Film film_of_replicates(int side, std::uint64_t samples, Value value) {
 }
 
 TEST(DependentSamples, EqualReplicatesGiveTheTextbookFormula) {
-  // Means 0 .. 7: sum of squared deviations 42, variance of their mean 42 / (8 * 7).
+  // Means 0 .. 3: sum of squared deviations 5, variance of their mean 5 / (4 * 3).
   const Film film = film_of_replicates(1, 1024, [](std::size_t, std::size_t r) {
     return Rgbd(static_cast<double>(r), 2.0 * static_cast<double>(r), 1.0);
   });
   const PixelErrors errors = pixel_errors(film);
-  EXPECT_NEAR(errors.standard_error[0], std::sqrt(42.0 / 56.0), 1e-12);
-  EXPECT_NEAR(errors.standard_error[1], 2.0 * std::sqrt(42.0 / 56.0), 1e-12);
+  EXPECT_NEAR(errors.standard_error[0], std::sqrt(5.0 / 12.0), 1e-12);
+  EXPECT_NEAR(errors.standard_error[1], 2.0 * std::sqrt(5.0 / 12.0), 1e-12);
   EXPECT_EQ(errors.standard_error[2], 0.0);
 }
 
@@ -57,15 +57,15 @@ TEST(DependentSamples, VarianceIsUnbiasedForAnyNumberOfSamples) {
   constexpr int kSide = 142;
   for (const std::uint64_t samples : {40, 64, 100, 128, 136, 250}) {
     TestRandom random(samples);
-    std::vector<std::vector<double>> of(static_cast<std::size_t>(kSide * kSide), std::vector<double>(8));
+    std::vector<std::vector<double>> of(static_cast<std::size_t>(kSide * kSide), std::vector<double>(kReplicates));
     for (auto& pixel : of) {
-      for (std::size_t r = 0; r < 8; ++r) pixel[r] = 5.0 + (r % 2 == 0 ? 1.0 : 0.5) * random.normal();
+      for (std::size_t r = 0; r < kReplicates; ++r) pixel[r] = 5.0 + (r % 2 == 0 ? 1.0 : 0.5) * random.normal();
     }
     const Film film =
         film_of_replicates(kSide, samples, [&](std::size_t p, std::size_t r) { return Rgbd(of[p][r]); });
     double truth = 0.0, shown = 0.0;
     const PixelSums one = film.pixel(0);
-    for (std::size_t r = 0; r < 8; ++r) {
+    for (std::size_t r = 0; r < kReplicates; ++r) {
       const double share = one.luminance_count[r] / static_cast<double>(samples);
       truth += share * share * (r % 2 == 0 ? 1.0 : 0.25);
     }
@@ -77,11 +77,11 @@ TEST(DependentSamples, VarianceIsUnbiasedForAnyNumberOfSamples) {
 
 TEST(DependentSamples, TheErrorIsThatOfReplicatesAndNotOfSamples) {
   TestRandom random(3);
-  std::vector<double> noise(32 * 32 * 8);
+  std::vector<double> noise(32 * 32 * kReplicates);
   for (double& x : noise) x = 1.0 + 0.1 * random.normal();
-  const Film film = film_of_replicates(32, 1024, [&](std::size_t p, std::size_t r) { return Rgbd(noise[8 * p + r]); });
+  const Film film = film_of_replicates(32, 1024, [&](std::size_t p, std::size_t r) { return Rgbd(noise[kReplicates * p + r]); });
   const ImageError error = image_error(film);
-  EXPECT_NEAR(error.error.value, 0.1 / std::sqrt(8.0) / std::sqrt(1.01), 0.003);
+  EXPECT_NEAR(error.error.value, 0.1 / std::sqrt(4.0) / std::sqrt(1.01), 0.003);
   EXPECT_FALSE(error.heavy_tailed);
 }
 

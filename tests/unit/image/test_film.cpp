@@ -22,7 +22,7 @@ BlockResult block_of(std::uint64_t index, const std::vector<double>& values, boo
 const PixelRect kOnePixel{0, 0, 1, 1};
 
 TEST(Film, BytesPerPixelAreStatedAndModest) {
-  EXPECT_EQ(Film::bytes_per_pixel(), 264U);
+  EXPECT_EQ(Film::bytes_per_pixel(), 216U);
 }
 
 TEST(Film, MeanAndMomentsMatchTheTwoPassFormula) {
@@ -40,7 +40,7 @@ TEST(Film, MeanAndMomentsMatchTheTwoPassFormula) {
   EXPECT_NEAR(film.plane("luminance_moment")[0], moment, 1e-12 * moment);
   EXPECT_EQ(film.plane("samples")[0], 8.0);
   EXPECT_EQ(film.plane("largest")[0], luminance(Rgbd(8.0)));
-  EXPECT_EQ(film.plane("luminance_count"), (std::vector<double>{8, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(film.plane("luminance_count"), (std::vector<double>{8, 0, 0, 0}));
   EXPECT_NEAR(film.plane("luminance_sum")[0], 24.0, 1e-12);
 }
 

@@ -55,7 +55,7 @@ TEST(Sobol, SamplesBelongToTheReplicatesOfTheFilm) {
       ASSERT_EQ(sobol::reversed(place.point.reversed_index()), next[place.sequence]++) << s;
     }
   }
-  for (const std::uint32_t count : next) EXPECT_EQ(count, 128U);
+  for (const std::uint32_t count : next) EXPECT_EQ(count, 256U);
 }
 
 // 2^k samples of a replicate from a multiple of 2^k on: one in each interval of length 2^-k of every number,

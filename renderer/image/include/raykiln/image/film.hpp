@@ -37,10 +37,10 @@ struct SampleBlock {
 /// All blocks that cover samples [0, samples), the last one cut short where it must be.
 [[nodiscard]] std::vector<SampleBlock> blocks_for(std::uint64_t samples);
 
-inline constexpr int kReplicates = 8;
+inline constexpr int kReplicates = 4;
 
-/// The replicate that a block belongs to: samples 16 j .. 16 j + 15 are of replicate j mod 8, so that after
-/// every 128 samples all replicates hold as many, and 2^k of them after 2^(k+3). Samplers whose points fill
+/// The replicate that a block belongs to: samples 16 j .. 16 j + 15 are of replicate j mod 4, so that after
+/// every 64 samples all replicates hold as many, and 2^k of them after 2^(k+2). Samplers whose points fill
 /// space together randomise each replicate by itself.
 [[nodiscard]] std::size_t replicate_of(std::uint64_t block_index);
 

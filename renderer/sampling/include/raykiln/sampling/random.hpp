@@ -33,7 +33,7 @@ enum class Dimension : std::uint32_t {
 /// How the samples of a pixel are spread over its random numbers.
 enum class Sampler : std::uint8_t {
   kRandom,  ///< independently
-  kSobol,   ///< in 8 replicates, each a scrambled Sobol' sequence by itself: see sobol.hpp
+  kSobol,   ///< in 4 replicates, each a scrambled Sobol' sequence by itself: see sobol.hpp
 };
 
 /// (seed, pixel, sample) mixed into 128 bits; of a sequence, all but the place in it, which stands apart.

@@ -24,7 +24,7 @@ struct SequencePoint {
 
 /// Which sequence a sample index belongs to and where it stands there.
 struct SequencePlace {
-  std::uint64_t sequence = 0;  ///< number mod 8: the replicate; +8 every 2^32 points of it
+  std::uint64_t sequence = 0;  ///< number mod 4: the replicate; +4 every 2^32 points of it
   SequencePoint point;
 };
 
@@ -94,11 +94,11 @@ inline constexpr std::array<std::uint8_t, 16> kDimensionOfSlot{0, 1, 2, 3,   // 
 
 }  // namespace sobol
 
-/// Samples 16 j .. 16 j + 15 continue the sequence of replicate j mod 8: the replicates of the film.
+/// Samples 16 j .. 16 j + 15 continue the sequence of replicate j mod 4: the replicates of the film.
 constexpr SequencePlace sequence_place(std::uint64_t sample) {
-  const std::uint64_t index = ((sample >> 7) << 4) | (sample & 15U);
+  const std::uint64_t index = ((sample >> 6) << 4) | (sample & 15U);
   const std::uint64_t reversed_index = sobol::reversed(static_cast<std::uint32_t>(index));
-  return {((sample >> 4) & 7U) | ((index >> 32) << 3), {(std::uint64_t{1} << 32) | reversed_index}};
+  return {((sample >> 4) & 3U) | ((index >> 32) << 2), {(std::uint64_t{1} << 32) | reversed_index}};
 }
 
 /// Uniform in [0, 1), a multiple of 2^-53: the number of `slot` at a vertex with the key (a, b). The first
