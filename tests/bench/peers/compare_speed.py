@@ -3,9 +3,12 @@
 
 relMSE = mean over pixels and channels of (x - r)^2 / (r^2 + 0.01 mean(r)^2). It is taken from pairs: renders
 of one method with independent seeds differ by twice their error, with no noise of a reference in it; r, in the
-denominator, is the mean of all renders of both programs. tests/peer shows that both have the same r. From n
-samples in t seconds with error e, e t / target seconds give the target. Error of stratified samples falls faster than
-1/n, so a first pair of renders tells each method's own n: the power of 2 nearest to where the target is, at most --most.
+denominator, is the mean of all renders of both programs. tests/peer shows that both have the same r.
+
+Error of stratified samples falls faster than 1/n, and not evenly, so each method is measured on both sides of the target: a
+first pair of renders tells where it is, and the powers of 2 next to it, of 16 to --most, are rendered in all turns. Seconds to the
+target lie on the straight line through both of log(seconds) over log(relMSE); fewer samples than 16 lie on that through 16 and 32.
+Where --most is not enough it is the one count, and from t seconds with error e, e t / target seconds give the target, as by 1/n.
 
 Methods take turns, so that a loud machine is loud for all. Seconds are of processor time, of all threads, of
 rendering alone: for raykiln what n samples take beyond one sample, by a render of --timed samples if n is less (what
@@ -97,6 +100,21 @@ class Mitsuba:
         return np.array(picture).astype(float), cpu, wall
 
 
+def counts_beside(wanted, most) -> list:
+    """The powers of 2 on either side of so many samples; the largest alone where it is not enough."""
+    low = int(np.clip(np.floor(np.log2(wanted)), 4, np.log2(most)))
+    return [n for n in (2**low, 2 ** (low + 1)) if n <= most]
+
+
+def seconds_to_target(renders) -> float:
+    """On the line through the first and the last; by 1/n where there is one, or where noise hides that errors fall."""
+    first, last = renders[0], renders[-1]
+    if not last["relmse"] < first["relmse"]:
+        return last["cpu_s"] * last["relmse"] / TARGET
+    slope = np.log(last["cpu_s"] / first["cpu_s"]) / np.log(first["relmse"] / last["relmse"])
+    return float(first["cpu_s"] * (first["relmse"] / TARGET) ** slope)
+
+
 def measure(name, options) -> dict:
     write, samples = SCENES[name]
     folder = WORK / name.split(",")[0].replace(" ", "_")
@@ -112,34 +130,41 @@ def measure(name, options) -> dict:
         pilot = [method.render(samples, seed)[0] for seed in (3, 4)]
         r = np.mean(pilot, 0)
         error = float((np.var(pilot, axis=0, ddof=1) / (r**2 + 0.01 * r.mean() ** 2)).mean())
-        counts[method.name] = 2 ** round(np.clip(np.log2(samples * error / TARGET), 4, np.log2(options.most)))
-        method.warm(counts[method.name])
-    pictures, cpu, wall = ({m.name: [] for m in methods} for _ in range(3))
+        counts[method.name] = counts_beside(samples * error / TARGET, options.most)
+        for count in counts[method.name]:
+            method.warm(count)
+    found = {(m.name, n): {"pictures": [], "cpu": [], "wall": []} for m in methods for n in counts[m.name]}
     for turn in range(options.turns):
         for method in methods:
-            picture, seconds, clock = method.render(counts[method.name], 10 + turn)
-            pictures[method.name].append(picture)
-            cpu[method.name].append(seconds)
-            wall[method.name].append(clock)
-    means = [np.mean(list(part), 0) for part in pictures.values()]
-    r = np.mean(means, 0)
+            for n in counts[method.name]:
+                picture, seconds, clock = method.render(n, 10 + turn)
+                into = found[method.name, n]
+                into["pictures"].append(picture)
+                into["cpu"].append(seconds)
+                into["wall"].append(clock)
+    r = np.mean([np.mean(part["pictures"], 0) for part in found.values()], 0)
     weight = 1 / (r**2 + 0.01 * r.mean() ** 2)
     result = {}
-    for method, renders in pictures.items():
-        error = float((np.var(renders, axis=0, ddof=1) * weight).mean())
-        seconds = float(np.median(cpu[method]))
-        result[method] = {"side": options.side, "samples": counts[method], "cpu_s": seconds, "wall_s": float(np.median(wall[method])),
-                          "relmse": error, "to_target_s": seconds * error / TARGET,
-                          "bias": float(np.mean(renders) / r.mean() - 1)}
+    for method in (m.name for m in methods):
+        renders = [{"samples": n, "cpu_s": float(np.median(found[method, n]["cpu"])), "wall_s": float(np.median(found[method, n]["wall"])),
+                    "relmse": float((np.var(found[method, n]["pictures"], axis=0, ddof=1) * weight).mean())}
+                   for n in counts[method]]
+        mean = np.mean([np.mean(found[method, n]["pictures"]) for n in counts[method]])
+        result[method] = {"side": options.side, "renders": renders, "to_target_s": seconds_to_target(renders),
+                          "bias": float(mean / r.mean() - 1)}
         print(f"{name} | {method}: {result[method]}", flush=True)
     return result
+
+
+def cell(found) -> str:
+    renders = "; ".join(f"{v['samples']}, {v['cpu_s']:.2f} s, {v['relmse']:.2g}" for v in found["renders"])
+    return f"{found['to_target_s']:.2f} ({renders})"
 
 
 def line(name, result) -> str:
     best = {who: min(v["to_target_s"] for k, v in result.items() if k.startswith(who))
             for who in ("raykiln", "Mitsuba")}
-    cells = [f"{v['to_target_s']:.2f} ({v['samples']}, {v['cpu_s']:.2f} s, {v['relmse']:.2g})" for v in result.values()]
-    return f"| {name} | {' | '.join(cells)} | **{best['raykiln'] / best['Mitsuba']:.2f}** |"
+    return f"| {name} | {' | '.join(cell(v) for v in result.values())} | **{best['raykiln'] / best['Mitsuba']:.2f}** |"
 
 
 def efficiency(options) -> list:
@@ -173,13 +198,15 @@ def main():
     parser.add_argument("--bin", default=os.environ.get("RAYKILN_BIN_DIR", str(ROOT / "build/test/bin")))
     parser.add_argument("--only", action="append", default=[], help="a scene's name (may be given again)")
     parser.add_argument("--side", type=int, default=128, help="of the picture, pixels")
-    parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--turns", type=int, default=3, help="at least 2: errors are taken from pairs")
     parser.add_argument("--most", type=int, default=256, help="samples a pixel of one render")
     parser.add_argument("--timed", type=int, default=256, help="samples of a render that is timed, at least")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--no-efficiency", action="store_true", help="leave the second table out")
     parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
     options = parser.parse_args()
+    if options.turns < 2:
+        parser.error("--turns: at least 2")
     chosen = [n for n in SCENES if not options.only or n in options.only]
     options.done = chosen
     WORK.mkdir(parents=True, exist_ok=True)
@@ -192,7 +219,7 @@ def main():
     first = next(iter(results.values()))
     lines = [f"| scene | {' | '.join(first)} | raykiln / Mitsuba, better of each |", "|---" * (len(first) + 2) + "|"]
     lines += [line(name, result) for name, result in results.items()]
-    lines += ["", f"Processor seconds to relMSE {TARGET} (in brackets: samples, seconds and relMSE of one render); pictures of "
+    lines += ["", f"Processor seconds to relMSE {TARGET} (in brackets: samples, seconds and relMSE of one render, on both sides); pictures of "
               f"{sorted({v['side'] for r in results.values() for v in r.values()})} pixels a side, {options.threads} threads, Mitsuba {mi.__version__}.", ""]
     lines += efficiency(options) if not options.no_efficiency else []
     print("\n".join(lines))
