@@ -34,6 +34,7 @@ CameraGroup::CameraGroup(const CameraRays& camera, const PathSettings& settings)
   kernel_ = kernel_with(settings.traversal, camera_kernel_avx512, camera_kernel_avx2);
   query_.seed_word = keyed::mix(settings.seed + keyed::kGolden, keyed::kRootTwo);  // the first line of path_key()
   query_.sobol = settings.sampler == Sampler::kSobol;
+  query_.sobol_third = sobol::kThird.of_digits.front().data();
   query_.in_pixel = settings.pixel_mode == PixelMode::kRandom;
   query_.window_x = settings.window_x;
   query_.window_y = settings.window_y;

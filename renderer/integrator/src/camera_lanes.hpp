@@ -58,7 +58,7 @@ inline void shoot(const CameraQuery& query, std::size_t first) {
   const LanePathKeys key = path_keys(query.seed_word, load<U64>(pixels), load<U64>(samples), query.sobol);
   Pair in_pixel{all(0.5), all(0.5)};
   if (query.in_pixel) {
-    in_pixel = pair_of(query.sobol, vertex_keys(key.a, key.b, key.point, U64{}, U64{}), 0, 0);
+    in_pixel = last_pair(query.sobol, vertex_keys(key.a, key.b, key.point, U64{}, U64{}), 0, 0, query.sobol_third);
   }
   const F64 x = load<F64>(place[0]) + in_pixel.u, y = load<F64>(place[1]) + in_pixel.v;
   const V3 way = everywhere(query.corner) + x * everywhere(query.step_x) + y * everywhere(query.step_y);

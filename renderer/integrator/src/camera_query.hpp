@@ -19,6 +19,7 @@ struct LaneStart {
 struct CameraQuery {
   std::uint64_t seed_word;  ///< what path_key() makes of the seed
   bool sobol;
+  const std::uint32_t* sobol_third;  ///< sobol::kThird, 16 words for each four digits of an index
   bool in_pixel;  ///< somewhere in the pixel, not in its middle
   std::int32_t window_x, window_y;
   double eye[3], corner[3], step_x[3], step_y[3], lo[3], hi[3];  ///< CameraRays::Pinhole

@@ -184,19 +184,26 @@ inline F64 sobol_number(const SobolGroup& g, std::uint64_t dimension, U32 coordi
   return as_double((digits << 21) | further) * 0x1p-53;
 }
 
-/// The two numbers of slots that have the first two dimensions of `group`.
 struct Pair {
   F64 u, v;
 };
-inline Pair pair_of(bool sobol, const Keys& key, std::uint64_t group, std::uint64_t slot_u) {
+/// The two numbers of slots that have the first two dimensions of `group`.
+inline Pair first_pair(bool sobol, const Keys& key, std::uint64_t group, std::uint64_t slot_u) {
   if (!sobol) return {plain_number(key, slot_u), plain_number(key, slot_u + 1)};
   const SobolGroup g = sobol_group(key, group);
   return {sobol_number(g, 0, g.index), sobol_number(g, 1, pascal_product(g.index))};
 }
+/// Those of slots that have the last two.
+inline Pair last_pair(bool sobol, const Keys& key, std::uint64_t group, std::uint64_t slot_u, const std::uint32_t* of_digits) {
+  if (!sobol) return {plain_number(key, slot_u), plain_number(key, slot_u + 1)};
+  const SobolGroup g = sobol_group(key, group);
+  const U32 third = product(of_digits, g.index);
+  return {sobol_number(g, 2, third), sobol_number(g, 3, pascal_product(third))};
+}
 /// The number of a slot that has the third.
-inline F64 third_of(bool sobol, const Keys& key, std::uint64_t slot, const std::uint32_t* of_digits) {
+inline F64 third_of(bool sobol, const Keys& key, std::uint64_t group, std::uint64_t slot, const std::uint32_t* of_digits) {
   if (!sobol) return plain_number(key, slot);
-  const SobolGroup g = sobol_group(key, slot / 4);
+  const SobolGroup g = sobol_group(key, group);
   return sobol_number(g, 2, product(of_digits, g.index));
 }
 

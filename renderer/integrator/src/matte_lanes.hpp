@@ -202,11 +202,11 @@ class MatteBatch {
   }
 
   void light_from_emitters(const LaneVertex& vertex) {
-    const F64 choice = third_of(query_.sobol, vertex.key, 9, query_.sobol_third);
+    const F64 choice = third_of(query_.sobol, vertex.key, 2, 9, query_.sobol_third);
     std::uint32_t triangles[kLanes], materials[kLanes];
     const F64 pdf_area = draw(vertex, choice, triangles);
     for (int i = 0; i < kLanes; ++i) materials[i] = query_.material_ids[triangles[i]];
-    const Pair at = pair_of(query_.sobol, vertex.key, 2, 10);
+    const Pair at = first_pair(query_.sobol, vertex.key, 2, 10);
     const F64 sheared = root(at.u);
     const LanePoint point = points_on(query_.mesh, triangles, sheared * (1.0 - at.v), sheared * at.v);
 
@@ -226,7 +226,7 @@ class MatteBatch {
   }
 
   void scatter(const LaneVertex& vertex) {
-    const Pair at = pair_of(query_.sobol, vertex.key, 1, 6);
+    const Pair at = first_pair(query_.sobol, vertex.key, 0, 6);
     const F64 x = at.u / (1.0 + root(1.0 - at.u));
     const V3f wi = around_axes(vertex.ng, x, at.v);
     const V3 direction = wide(wi);
@@ -253,7 +253,7 @@ class MatteBatch {
     if (!any) return ~I64{};
     const F64 p = query_.roulette_factor * larger(larger(throughput.x, throughput.y), throughput.z) / load<F64>(scale);
     const I64 at_stake = load<I64>(plays) & (p < 1.0);
-    const I64 ends = at_stake & (third_of(query_.sobol, vertex.key, 12, query_.sobol_third) >= p);
+    const I64 ends = at_stake & (third_of(query_.sobol, vertex.key, 3, 12, query_.sobol_third) >= p);
     const I64 lost = ends & candidates;
     for (int i = 0; i < kLanes; ++i) counts_.roulette_ends += lost[i] != 0;
     throughput = select(at_stake, throughput / p, throughput);

@@ -4,40 +4,24 @@ namespace raykiln::render {
 namespace sobol {
 namespace {
 
-/// What a dimension of Sobol' starts from: a primitive polynomial modulo 2, without its first and last
-/// coefficient, and as many odd numbers as it has degrees.
-struct Start {
-  unsigned degree;
-  std::uint32_t coefficients;
-  std::array<std::uint32_t, 3> numbers;
-};
+/// Products of the field of four elements, whose bits are the coefficients of 1 and of a root a of x^2 + x + 1.
+constexpr std::uint32_t times_root(std::uint32_t x) { return ((x << 1) & 2U) ^ (x >> 1) * 3U; }
 
-/// m_j = 2^s m_(j-s) ^ m_(j-s) ^ XOR over k of 2^k a_k m_(j-k) (Bratley & Fox 1988).
-constexpr std::array<std::uint32_t, 32> direction_numbers(const Start& start) {
-  std::array<std::uint32_t, 32> m{};
-  for (unsigned j = 0; j < 32; ++j) {
-    if (j < start.degree) {
-      m[j] = start.numbers[j];
-      continue;
-    }
-    const std::uint32_t last = m[j - start.degree];
-    m[j] = (last << start.degree) ^ last;
-    for (unsigned k = 1; k < start.degree; ++k) {
-      if (((start.coefficients >> (start.degree - 1 - k)) & 1U) != 0) m[j] ^= m[j - k] << k;
-    }
+/// Pascal's triangle with a^(j - i) beside the binomial of j and i, for digits of four values: the binomial is odd where the set of
+/// bits of j holds that of i (Lucas).
+constexpr std::uint32_t column(unsigned digit, unsigned bit) {
+  std::uint32_t words = 0, power = 1U << bit;
+  for (unsigned i = digit + 1; i-- > 0; power = times_root(power)) {
+    if ((digit & i) == i) words |= power << (2 * i);
   }
-  return m;
+  return words;
 }
 
-constexpr Columns columns_of(const Start& start) {
-  const auto m = direction_numbers(start);
+constexpr Columns third_columns() {
   Columns columns;
-  for (unsigned i = 0; i < 8; ++i) {
+  for (unsigned j = 0; j < 32; ++j) {
     for (unsigned digits = 0; digits < 16; ++digits) {
-      for (unsigned bit = 0; bit < 4; ++bit) {
-        const unsigned j = 4 * i + bit;
-        if (((digits >> bit) & 1U) != 0) columns.of_digits[i][digits] ^= reversed(m[j] << (31 - j));
-      }
+      if (((digits >> (j % 4)) & 1U) != 0) columns.of_digits[j / 4][digits] ^= column(j / 2, j % 2);
     }
   }
   return columns;
@@ -45,17 +29,15 @@ constexpr Columns columns_of(const Start& start) {
 
 }  // namespace
 
-// x^2 + x + 1 and x^3 + x + 1.
-constinit const Columns kThird = columns_of({2, 1, {1, 3, 0}});
-constinit const Columns kFourth = columns_of({3, 1, {1, 3, 1}});
+constinit const Columns kThird = third_columns();
 
 }  // namespace sobol
 
 double sobol_number(std::uint64_t a, std::uint64_t b, SequencePoint point, std::uint32_t slot) {
   using namespace sobol;
+  const auto [number, dimension] = place_of(slot, point.of_first_vertex());
   // Slots of the plain numbers are 1 to 16 in this place, groups 17 to 20.
-  const std::uint64_t group = keyed::mix(a + (17 + slot / 4) * keyed::kGolden, b);
-  const unsigned dimension = kDimensionOfSlot[slot & 15U];
+  const std::uint64_t group = keyed::mix(a + (17U + number) * keyed::kGolden, b);
   const std::uint64_t own = keyed::mix(group + (dimension + 1) * keyed::kGolden, keyed::kRootTwo);
   const std::uint32_t index =
       reversed(scrambled(point.reversed_index(), static_cast<std::uint32_t>(group)));

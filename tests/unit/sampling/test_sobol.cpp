@@ -21,12 +21,13 @@ std::size_t cell(double u, unsigned bits) {
   return static_cast<std::size_t>(std::ldexp(u, static_cast<int>(bits)));
 }
 
-// First points of Sobol' in dimensions 1 to 4 (Joe & Kuo 2008), as multiples of 1/8.
+// First points as multiples of 1/8: dimensions 1 and 2 of Sobol' (Joe & Kuo 2008); the third worked out by hand from powers of a
+// root of x^2 + x + 1, the fourth from the third as the second from the first.
 TEST(Sobol, KnownFirstPoints) {
   constexpr unsigned kEighths[4][8] = {{0, 4, 2, 6, 1, 5, 3, 7},
                                        {0, 4, 6, 2, 5, 1, 3, 7},
-                                       {0, 4, 6, 2, 3, 7, 5, 1},
-                                       {0, 4, 6, 2, 1, 5, 7, 3}};
+                                       {0, 4, 2, 6, 3, 7, 1, 5},
+                                       {0, 4, 6, 2, 3, 7, 5, 1}};
   for (unsigned d = 0; d < 4; ++d) {
     for (std::uint32_t i = 0; i < 8; ++i) {
       EXPECT_EQ(sobol::reversed(sobol::coordinate(i, d)) >> 29, kEighths[d][i]) << d << ' ' << i;
@@ -59,10 +60,12 @@ TEST(Sobol, SamplesBelongToTheReplicatesOfTheFilm) {
 }
 
 // 2^k samples of a replicate from a multiple of 2^k on: one in each interval of length 2^-k of every number,
-// and one in each elementary rectangle of the pairs that lie in the first two dimensions.
+// and one in each elementary rectangle of the pairs that lie in the first or the last two dimensions.
 TEST(Sobol, EveryAlignedRunFillsSpace) {
   constexpr unsigned kBits = 4;
   const std::vector<std::pair<Dimension, Dimension>> pairs{{Dimension::kPixelX, Dimension::kPixelY},
+                                                           {Dimension::kLensX, Dimension::kLensY},
+                                                           {Dimension::kLobeChoice, Dimension::kFresnelChoice},
                                                            {Dimension::kDirectionU, Dimension::kDirectionV},
                                                            {Dimension::kLightU, Dimension::kLightV},
                                                            {Dimension::kEnvironmentU, Dimension::kEnvironmentV}};
@@ -82,6 +85,41 @@ TEST(Sobol, EveryAlignedRunFillsSpace) {
           seen |= 1U << ((y << k) | x);
         }
         EXPECT_EQ(seen, 0xFFFFU) << block << ' ' << k;
+      }
+    }
+  }
+}
+
+// 16 samples of a replicate fill the 4 x 4 squares of any two numbers of a group, 64 the 4 x 4 x 4 cubes of any three.
+TEST(Sobol, NumbersOfAGroupFillSpaceTogether) {
+  struct Group {
+    std::uint64_t bounce;
+    Dimension of[4];
+  };
+  const Group groups[] = {
+      {0, {Dimension::kDirectionU, Dimension::kDirectionV, Dimension::kPixelX, Dimension::kPixelY}},
+      {0, {Dimension::kLensX, Dimension::kLensY, Dimension::kLobeChoice, Dimension::kFresnelChoice}},
+      {3, {Dimension::kDirectionU, Dimension::kDirectionV, Dimension::kLobeChoice, Dimension::kFresnelChoice}},
+      {1, {Dimension::kLightU, Dimension::kLightV, Dimension::kLightChoice, Dimension::kLightKindChoice}},
+      {2, {Dimension::kEnvironmentU, Dimension::kEnvironmentV, Dimension::kRoulette, Dimension::kCoverage}}};
+  const auto sample_of = [](std::uint64_t replicate, std::uint64_t i) { return 64 * (i / 16) + 16 * replicate + i % 16; };
+  for (const Group& group : groups) {
+    for (std::uint64_t run = 0; run < 16; ++run) {
+      const std::uint64_t replicate = run % 4, first = 64 * (run / 4);
+      for (unsigned left_out = 0; left_out < 4; ++left_out) {
+        std::set<std::size_t> cubes, squares;
+        for (std::uint64_t i = 0; i < 64; ++i) {
+          std::size_t cube = 0, square = 0;
+          for (unsigned k = 0; k < 4; ++k) {
+            const std::size_t at = cell(number(7, sample_of(replicate, first + i), group.of[k], group.bounce), 2);
+            if (k != left_out) cube = 4 * cube + at;
+            if (k != left_out && k != (left_out + 1) % 4) square = 4 * square + at;
+          }
+          cubes.insert(cube);
+          squares.insert(16 * (i / 16) + square);
+        }
+        EXPECT_EQ(cubes.size(), 64U);
+        EXPECT_EQ(squares.size(), 64U);
       }
     }
   }

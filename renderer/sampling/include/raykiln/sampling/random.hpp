@@ -75,7 +75,7 @@ struct VertexKey {
                                           std::uint64_t bounce) {
   const std::uint64_t n = keyed::mix(path.b + node * keyed::kGolden, bounce * keyed::kRootTwo);
   return {keyed::mix(path.a + bounce * keyed::kGolden, n), keyed::mix(n + keyed::kRootTwo, path.a),
-          path.point};
+          path.point.at_vertex(bounce)};
 }
 
 [[nodiscard]] inline std::uint64_t random_bits(const VertexKey& vertex, Dimension dimension) {
@@ -83,8 +83,8 @@ struct VertexKey {
                     vertex.b);
 }
 
-/// Uniform in [0, 1), a multiple of 2^-53; never 1. Four slots from a multiple of 4 on are the coordinates
-/// of one point of a sequence; the points of other slots and vertices are randomised by themselves.
+/// Uniform in [0, 1), a multiple of 2^-53; never 1. Slots of a group (sobol::place_of) are the coordinates
+/// of one point of a sequence; the points of other groups and vertices are randomised by themselves.
 [[nodiscard]] inline double uniform(const VertexKey& vertex, Dimension dimension) {
   if (vertex.point.of_sequence()) {
     return sobol_number(vertex.a, vertex.b, vertex.point, static_cast<std::uint32_t>(dimension));

@@ -1,8 +1,12 @@
-// Owen-scrambled Sobol' points as a pure function of keys: four dimensions at a time, padded.
+// Owen-scrambled points of Sobol's kind as a pure function of keys: four dimensions at a time, padded.
 //
-// Burley 2020, "Practical hash-based Owen scrambling" (JCGT 9:4): each group of four dimensions uses the first
-// four of Sobol' again, with the order of the points and each coordinate scrambled by hashes of its own.
+// Burley 2020, "Practical hash-based Owen scrambling" (JCGT 9:4): each group of four dimensions uses the same
+// four again, with the order of the points and each coordinate scrambled by hashes of its own.
 // Groups are thereby independent of each other, and no table grows with the length of a path.
+//
+// The four are Niederreiter's sequence over the field of four elements (1988): 4^k points from a multiple of 4^k on have one in each
+// box of 4^-a x 4^-b x 4^-c x 4^-d with a + b + c + d = k, so that 16 fill the squares of any two coordinates and 64 the cubes of any
+// three. The first two are those of Sobol', and both they and the other two fill rectangles of all powers of 2 as well.
 #pragma once
 
 #include <array>
@@ -15,8 +19,13 @@ namespace raykiln::render {
 
 /// A place in a sequence: its index with the first binary digit last, as scrambling wants it.
 struct SequencePoint {
-  std::uint64_t word = 0;  ///< bit 32 is set for points of a sequence; the lower half is the index
+  /// Bit 32 is set for points of a sequence, bit 33 for those of a path's first vertex as well; the lower half is the index.
+  std::uint64_t word = 0;
   [[nodiscard]] constexpr bool of_sequence() const { return word != 0; }
+  [[nodiscard]] constexpr bool of_first_vertex() const { return (word >> 33) != 0; }
+  [[nodiscard]] constexpr SequencePoint at_vertex(std::uint64_t bounce) const {
+    return {bounce == 0 ? word | (word >> 32) << 33 : word};
+  }
   [[nodiscard]] constexpr std::uint32_t reversed_index() const {
     return static_cast<std::uint32_t>(word);
   }
@@ -50,12 +59,11 @@ constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-/// Columns of the generator matrices of the third and fourth dimension, joined for every value of four
-/// digits of the index.
+/// Columns of the generator matrix of the third dimension, joined for every value of four digits of the index.
 struct Columns {
   std::array<std::array<std::uint32_t, 16>, 8> of_digits{};
 };
-extern const Columns kThird, kFourth;
+extern const Columns kThird;
 
 constexpr std::uint32_t product(const Columns& columns, std::uint32_t index) {
   std::uint32_t x = 0;
@@ -74,23 +82,28 @@ constexpr std::uint32_t pascal_product(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-/// Coordinate `dimension` (0 .. 3) of Sobol' point `index`, its first binary digit in the lowest bit.
-/// Direction numbers of Joe & Kuo (2008).
+/// Coordinate `dimension` (0 .. 3) of point `index`, its first binary digit in the lowest bit.
 constexpr std::uint32_t coordinate(std::uint32_t index, unsigned dimension) {
-  switch (dimension) {
-    case 0: return index;
-    case 1: return pascal_product(index);
-    case 2: return product(kThird, index);
-    default: return product(kFourth, index);
-  }
+  const std::uint32_t first = dimension < 2 ? index : product(kThird, index);
+  return dimension % 2 == 0 ? first : pascal_product(first);
 }
 
-/// Which Sobol' dimension a slot uses. The first two fill squares best, so the pairs (place in the
-/// pixel, direction, place on a light, direction to the environment) have them; choices come after.
-inline constexpr std::array<std::uint8_t, 16> kDimensionOfSlot{0, 1, 2, 3,   // pixel, lens
-                                                               2, 3, 0, 1,   // lobe, side, direction
-                                                               3, 2, 0, 1,   // kind, light, place on it
-                                                               2, 0, 1, 3};  // roulette, environment
+/// Where a slot stands: its group at the vertex and the dimension there.
+struct SlotPlace {
+  std::uint8_t group, dimension;
+};
+/// Pairs that fill squares have the first or the last two dimensions, choices those that are left. What a ray does next is one point:
+/// direction, lobe and side; at the first vertex, where alone a place in the pixel and in the lens are drawn, direction and place in the
+/// pixel.
+constexpr SlotPlace place_of(std::uint32_t slot, bool first_vertex) {
+  constexpr std::array<SlotPlace, 16> kPlaces{{{0, 2}, {0, 3}, {1, 0}, {1, 1},     // pixel, lens
+                                               {0, 2}, {0, 3}, {0, 0}, {0, 1},     // lobe, side, direction
+                                               {2, 3}, {2, 2}, {2, 0}, {2, 1},     // kind of light, light, place on it
+                                               {3, 2}, {3, 0}, {3, 1}, {3, 3}}};   // roulette, environment, coverage
+  const SlotPlace place = kPlaces[slot & 15U];
+  const bool gives_way = first_vertex && slot / 2 == 2;  // lobe and side
+  return gives_way ? SlotPlace{1, place.dimension} : place;
+}
 
 }  // namespace sobol
 
