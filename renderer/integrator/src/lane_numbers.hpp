@@ -171,7 +171,8 @@ struct SobolGroup {
   U64 group;
   U32 index;
 };
-inline SobolGroup sobol_group(const Keys& key, std::uint64_t group) {
+template <typename Group>
+SobolGroup sobol_group(const Keys& key, Group group) {
   const U64 word = mix(key.a + (17 + group) * kGolden, key.b);
   return {word, reversed(scrambled(key.reversed_index, __builtin_convertvector(word, U32)))};
 }
@@ -200,8 +201,9 @@ inline Pair last_pair(bool sobol, const Keys& key, std::uint64_t group, std::uin
   const U32 third = product(of_digits, g.index);
   return {sobol_number(g, 2, third), sobol_number(g, 3, pascal_product(third))};
 }
-/// The number of a slot that has the third.
-inline F64 third_of(bool sobol, const Keys& key, std::uint64_t group, std::uint64_t slot, const std::uint32_t* of_digits) {
+/// The number of a slot that has the third. `group`: of all lanes, or of each.
+template <typename Group>
+F64 third_of(bool sobol, const Keys& key, Group group, std::uint64_t slot, const std::uint32_t* of_digits) {
   if (!sobol) return plain_number(key, slot);
   const SobolGroup g = sobol_group(key, group);
   return sobol_number(g, 2, product(of_digits, g.index));

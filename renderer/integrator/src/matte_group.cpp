@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lane_choice.hpp"
+#include "raykiln/shading/caster_cones.hpp"
 #include "raykiln/shading/punctual_light.hpp"
 #include "vertex_batch.hpp"
 
@@ -60,6 +61,9 @@ MatteGroup::MatteGroup(const Transport& transport) : mesh_(transport.mesh), max_
   query_.emission = emission_.data();
   query_.sobol = transport.settings.sampler == Sampler::kSobol;
   query_.sobol_third = sobol::kThird.of_digits.front().data();
+  static_assert(kLaneMostCasters == kMostCasters);
+  for (const CausticCaster& c : transport.casters) casters_.insert(casters_.end(), {c.centre.x, c.centre.y, c.centre.z, c.radius});
+  query_.casters = {casters_.data(), transport.casters.size(), kCasterBoost, kMostToCasters, kLeastCone, kLastCasterBounce};
 }
 
 void MatteGroup::read_materials(const std::vector<Material>& materials) {

@@ -53,6 +53,7 @@ class MatteGroup {
   std::vector<std::uint8_t> plain_;  ///< a material: is it of this kind?
   std::vector<float> diffuse_, emission_;
   std::vector<double> pdf_area_;
+  std::vector<double> casters_;  ///< four a body: centre and radius
   std::vector<LanePointLight> lights_;
   std::vector<std::uint32_t> chosen_;
 };

@@ -2,6 +2,7 @@
 // one vertex at a time: same operations, same order, same bits.
 #pragma once
 
+#include "lane_casters.hpp"
 #include "lane_surface.hpp"
 #include "matte_query.hpp"
 
@@ -52,6 +53,7 @@ class MatteBatch {
   void run() {
     LaneVertex vertex = read();
     for (std::size_t k = 0; k < query_.point_light_count; ++k) light_from_place(vertex, query_.point_lights[k]);
+    look_for_casters(vertex);
     if (query_.emitter_sampling) light_from_emitters(vertex);
     scatter(vertex);
   }
@@ -215,8 +217,9 @@ class MatteBatch {
     const V3 wi = way / root(distance2);
     const F64 cosine = absolute(dot(point.ng, wi));
     const F64 pdf = pdf_area * distance2 / cosine;
-    const LaneValue value = evaluate(vertex, wide(narrow(wi)));
-    const F64 ratio = value.pdf / pdf;
+    const V3 rounded = wide(narrow(wi));
+    const LaneValue value = evaluate(vertex, rounded);
+    const F64 ratio = found_pdf(rounded, value) / pdf;
     const F64 weight = 1.0 / (1.0 + ratio * ratio) / pdf;
     const V3 found = weight * (vertex.throughput * value.f_cos * materials_of(query_.emission, materials));
     const I64 sent = vertex.active & (pdf_area > 0.0) & (distance2 > 0.0) & (cosine > 0.0) &
@@ -225,33 +228,60 @@ class MatteBatch {
     push_shadows(sent, from, ray_ends(point, wide(from)), 1.0F - 0x1p-24F, found, triangles);
   }
 
+  void look_for_casters(const LaneVertex& vertex) {
+    if (query_.casters.count == 0) return;
+    alignas(64) std::int64_t open[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      open[i] = path(i).bounce <= query_.casters.last_bounce ? -1 : 0;
+      mixes_ = mixes_ || open[i] != 0;
+    }
+    if (mixes_) see_casters(seen_, query_.casters, vertex.point.p, vertex.normal, load<I64>(open));
+  }
+
+  /// Of slot kLobeChoice, which at the first vertex of a path stands in another group (sobol::place_of).
+  [[nodiscard]] F64 lobe_numbers(const LaneVertex& vertex) const {
+    alignas(64) std::uint64_t group[kLanes];
+    for (int i = 0; i < kLanes; ++i) group[i] = path(i).bounce == 0 ? 1 : 0;
+    return third_of(query_.sobol, vertex.key, load<U64>(group), 4, query_.sobol_third);
+  }
+
+  /// The density with which scatter() finds directions of these values.
+  [[nodiscard]] F64 found_pdf(const V3& wi, const LaneValue& value) const {
+    return mixes_ ? mixed_pdf(seen_, wi, value.pdf) : value.pdf;
+  }
+
   void scatter(const LaneVertex& vertex) {
     const Pair at = first_pair(query_.sobol, vertex.key, 0, 6);
-    const F64 x = at.u / (1.0 + root(1.0 - at.u));
-    const V3f wi = around_axes(vertex.ng, x, at.v);
+    F64 x = at.u / (1.0 + root(1.0 - at.u));
+    V3f axis = vertex.ng;
+    if (mixes_) choose_cone(seen_, lobe_numbers(vertex), at.u, axis, x);
+    const V3f wi = around_axes(axis, x, at.v);
     const V3 direction = wide(wi);
     const LaneValue value = evaluate(vertex, direction);
+    const F64 pdf = found_pdf(direction, value);
     I64 goes_on = vertex.active & ~is_zero(value.f_cos);
-    V3 throughput = vertex.throughput * (value.f_cos / value.pdf);
-    if (query_.roulette) goes_on &= survivors(vertex, goes_on, throughput);
+    V3 throughput = vertex.throughput * (value.f_cos / pdf);
+    alignas(64) double scale[kLanes];
+    for (int i = 0; i < kLanes; ++i) scale[i] = path(i).scale;
+    F64 scales = load<F64>(scale);
+    if (mixes_) scales *= value.pdf / pdf;
+    if (query_.roulette) goes_on &= survivors(vertex, goes_on, scales, throughput);
     const V3f from = ray_origins(vertex.point, direction);
     for (int i = 0; i < count_; ++i) {
-      if (goes_on[i] != 0) push_next(vertex, i, from, wi, throughput, value.pdf[i]);
+      if (goes_on[i] != 0) push_next(vertex, i, from, wi, throughput, scales[i], pdf[i]);
     }
   }
 
   /// survives_roulette() of each lane.
-  I64 survivors(const LaneVertex& vertex, I64 candidates, V3& throughput) {
-    alignas(64) double scale[kLanes];
+  I64 survivors(const LaneVertex& vertex, I64 candidates, F64 scales, V3& throughput) {
     alignas(64) std::int64_t plays[kLanes];
     bool any = false;
     for (int i = 0; i < kLanes; ++i) {
-      scale[i] = path(i).scale;
       plays[i] = path(i).bounce + 1U > query_.bounces_before_roulette ? -1 : 0;
       any = any || plays[i] != 0;
     }
     if (!any) return ~I64{};
-    const F64 p = query_.roulette_factor * larger(larger(throughput.x, throughput.y), throughput.z) / load<F64>(scale);
+    const F64 p = query_.roulette_factor * larger(larger(throughput.x, throughput.y), throughput.z) / scales;
     const I64 at_stake = load<I64>(plays) & (p < 1.0);
     const I64 ends = at_stake & (third_of(query_.sobol, vertex.key, 3, 12, query_.sobol_third) >= p);
     const I64 lost = ends & candidates;
@@ -260,7 +290,8 @@ class MatteBatch {
     return ~ends;
   }
 
-  void push_next(const LaneVertex& vertex, int i, const V3f& from, const V3f& wi, const V3& throughput, double pdf) {
+  void push_next(const LaneVertex& vertex, int i, const V3f& from, const V3f& wi, const V3& throughput, double scale,
+                 double pdf) {
     const double t[3] = {throughput.x[i], throughput.y[i], throughput.z[i]};
     const LanePath& before = path(i);
     if (poisons(t, query_.emitted + before.slot * query_.emitted_stride)) return;
@@ -270,6 +301,7 @@ class MatteBatch {
     LanePath& next = query_.next_paths[n];
     next = before;
     for (int k = 0; k < 3; ++k) next.throughput[k] = t[k];
+    next.scale = scale;
     next.pdf = pdf;
     next.bounce = static_cast<std::uint16_t>(before.bounce + 1);
     if (query_.next_origins == nullptr) return;
@@ -282,6 +314,8 @@ class MatteBatch {
   const MatteQuery& query_;
   MatteCounts& counts_;
   int count_ = 0;
+  bool mixes_ = false;  ///< directions of some lane are drawn towards casters, too
+  LaneCones seen_;      ///< set where that is so
   std::uint32_t index_[kLanes], ids_[kLanes];  ///< of the paths; of the triangles that they met
 };
 

@@ -26,6 +26,16 @@ struct LaneDraw {
   double pdf_area;
 };
 
+constexpr std::size_t kLaneMostCasters = 8;
+
+/// Bodies towards which directions are drawn, too, and the constants of caster_cones.hpp.
+struct LaneCasters {
+  const double* spheres;  ///< centre and radius
+  std::size_t count;
+  double boost, most, least_cone;
+  std::uint32_t last_bounce;
+};
+
 /// Reads of one scene, and where the outcome goes. Vertices lie on flat triangles of diffuse, opaque materials
 /// that do not shine; directions are sampled by the cosine, and all paths may go on.
 struct MatteQuery : VertexQuery {
@@ -44,6 +54,8 @@ struct MatteQuery : VertexQuery {
 
   const LanePointLight* point_lights;
   std::size_t point_light_count;
+
+  LaneCasters casters;
 
   LaneRay* shadow_rays;  ///< room for one a vertex and light, and one more a vertex
   LaneLight* shadow_lights;

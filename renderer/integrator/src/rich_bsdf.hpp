@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "raykiln/shading/bsdf.hpp"
+#include "raykiln/shading/caster_cones.hpp"
 #include "raykiln/shading/microfacet_bsdf.hpp"
 
 namespace raykiln::render {
@@ -21,6 +22,14 @@ inline BsdfValue evaluate(const RichBsdf& bsdf, const Vec3f& wi) {
 }
 inline BsdfSample sample_bsdf(const RichBsdf& bsdf, const VertexKey& vertex) {
   return std::visit([&](const auto& b) { return sample_bsdf(b, vertex); }, bsdf.of);
+}
+
+inline BsdfSample sample_bsdf(const RichBsdf& bsdf, const DirectionNumbers& numbers) {
+  return std::visit([&](const auto& b) { return sample_bsdf(b, numbers); }, bsdf.of);
+}
+inline double diffuse_part(const MicrofacetBsdf& b) { return b.choice.diffuse + b.choice.diffuse_through; }
+inline double diffuse_part(const RichBsdf& bsdf) {
+  return std::visit([](const auto& b) { return diffuse_part(b); }, bsdf.of);
 }
 
 }  // namespace raykiln::render

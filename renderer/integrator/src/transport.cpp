@@ -48,6 +48,15 @@ bool draws_by_tree(const TransportScene& scene, const PathSettings& settings) {
   return settings.emitter_sampling && scene.emitters.by_tree(settings.emitter_choice);
 }
 
+/// Light of emitters by way of a body takes two reflections. Left out where caustics are; the formulas of the seed
+/// and the estimator that others are held against keep their own directions. `settings`: folded().
+bool draws_towards_casters(const TransportScene& scene, const PathSettings& settings) {
+  return settings.max_depth >= 2 && scene.emitters.has_triangles() &&
+         settings.simulated.contains(Effect::kAreaEmitters) && !settings.left_out.contains(Effect::kCaustics) &&
+         settings.bsdf.direction_sampling == DirectionSampling::kBsdf &&
+         settings.bsdf.light.diffuse_sampling == DiffuseSampling::kCosine;
+}
+
 }  // namespace
 
 bool make_ready(const TransportScene& scene, const PathSettings& settings, const std::stop_token& stop) {
@@ -86,6 +95,7 @@ Transport make_transport(const TransportScene& scene, const PathSettings& settin
   t.environment_sampling = t.environment != nullptr && settings.emitter_sampling &&
                            simulated.contains(Effect::kEmitterSampling);
   t.emitters_by_tree = draws_by_tree(scene, t.settings);
+  if (draws_towards_casters(scene, t.settings)) t.casters = scene.casters;
   t.has_light = simulated.contains_any(kSources) &&
                 (t.has_lights_without_surface() || t.background != Rgb(0.0F) ||
                  t.environment != nullptr || scene.emitters.has_triangles());

@@ -29,6 +29,7 @@ struct Transport {
   bool emitters_by_tree = false;      ///< where they are sampled
   const SurfaceTextures* textures = nullptr;
   const TexturePyramids* pyramids = nullptr;  ///< where textures are read by footprint
+  std::span<const CausticCaster> casters{};  ///< towards which diffuse surfaces draw directions
   bool normals = true;    ///< shading normals are interpolated
   Gaps gaps{};            ///< where light passes straight through surfaces
   bool has_light = true;  ///< any at all; without, nothing is lost where a path is cut off

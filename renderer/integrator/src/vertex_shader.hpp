@@ -15,6 +15,7 @@
 #include "raykiln/shading/surface_point.hpp"
 #include "raykiln/shading/texture_lookup.hpp"
 #include "rich_bsdf.hpp"
+#include "roulette.hpp"
 #include "vertex_shading.hpp"
 
 namespace raykiln::render {
@@ -38,21 +39,6 @@ inline bool finite(const Rgbd& c) {
   return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 inline bool zero(const Rgb& c) { return c == Rgb(0.0F); }
-
-/// Ends a path with probability 1 - p and multiplies what goes on by 1/p, where p is three times its throughput
-/// so far. The part of the throughput that is a change of medium is left out of p: inside glass of
-/// index n radiance is n^2 times larger, on the way from the camera throughput n^2 times smaller,
-/// and such a path is worth no less. What goes on has a throughput of at least
-/// a third of `scale`, so weights stay bounded.
-inline bool survives_roulette(PathState& path, const VertexKey& key) {
-  if (path.bounce <= static_cast<std::uint32_t>(kFirstDrawAfter)) return true;
-  const Rgbd& t = path.throughput;
-  const double p = kRouletteFactor * std::max({t.x, t.y, t.z}) / path.scale;
-  if (!(p < 1.0)) return true;  // also what is not finite: it is counted further on
-  if (uniform(key, Dimension::kRoulette) >= p) return false;
-  path.throughput /= p;
-  return true;
-}
 
 /// Cosine of a direction over the plane of normal `ng`, times its length; 0 when it lies in it as far as doubles can
 /// tell.
@@ -134,6 +120,7 @@ class VertexShader {
                             : VertexKey{}};
     light_from_points(vertex);
     if (last) return;
+    look_for_casters(vertex);
     if (settings_.emitter_sampling) light_from_emitters(vertex);
     if (scene_.environment_sampling) light_from_environment(vertex);
     scatter(vertex);
@@ -264,6 +251,19 @@ class VertexShader {
     for (const DirectionalLight& light : scene_.directional_lights) light_along(vertex, light);
   }
 
+  /// The bodies towards which this surface draws directions, too.
+  void look_for_casters(const Vertex& vertex) {
+    if (scene_.casters.empty() || state_.bounce > kLastCasterBounce) return;
+    const double part = diffuse_part(vertex.bsdf);
+    if (!(part > 0.0)) return;
+    see_casters(sinks_.seen, scene_.casters, vertex.point.p, Vec3d(vertex.bsdf.ng), part);
+    seen_ = &sinks_.seen;
+  }
+  /// The density with which scatter() finds a direction of this value.
+  [[nodiscard]] double found_pdf(const Vec3d& wi, const BsdfValue& value) const {
+    return seen_ == nullptr ? value.pdf : mixed_pdf(*seen_, Vec3f(wi), value.pdf);
+  }
+
   /// Can a mirror or a clear border send on light of an emitter's point at all? Nearly always not, and then neither
   /// is a point drawn: value.f_cos would be 0.
   bool light_may_come(const Vertex& vertex) const {
@@ -293,7 +293,7 @@ class VertexShader {
     const double pdf = solid_angle_pdf(sample.pdf_area, distance2, cosine);
     const BsdfValue value = evaluate(vertex.bsdf, Vec3f(wi));
     if (value.f_cos == Rgbd(0.0)) return;
-    const double weight = power_heuristic(pdf, settings_.branches * value.pdf) / pdf;
+    const double weight = power_heuristic(pdf, settings_.branches * found_pdf(wi, value)) / pdf;
     Rgbd radiance = sample.radiance;
     if (kSwitches.rich && scene_.textures != nullptr) {
       radiance *= emission_factor(*scene_.textures, sample.point.material,
@@ -319,7 +319,7 @@ class VertexShader {
     const BsdfValue value = evaluate(vertex.bsdf, wi);
     if (value.f_cos == Rgbd(0.0)) return;
     const double weight =
-        power_heuristic(sample.pdf, settings_.branches * value.pdf) / sample.pdf;
+        power_heuristic(sample.pdf, settings_.branches * found_pdf(sample.wi, value)) / sample.pdf;
     queue({ray_origin(vertex.point, sample.wi), wi, ShadowEnd::kInfinity, vertex.id},
           state_.throughput * value.f_cos * sample.radiance * weight);
   }
@@ -333,7 +333,8 @@ class VertexShader {
       child.bounce = static_cast<std::uint16_t>(state_.bounce + 1);
       const VertexKey key =
           branches == 1 ? vertex.key : vertex_key(state_.key, child.node, state_.bounce);
-      const BsdfSample sample = sample_bsdf(vertex.bsdf, key);
+      const BsdfSample sample =
+          seen_ == nullptr ? sample_bsdf(vertex.bsdf, key) : sample_mixture(vertex.bsdf, *seen_, key);
       if (sample.lobe == Lobe::kNone) continue;
       if constexpr (kSwitches.reduced) child.met_diffuse |= sample.lobe == Lobe::kDiffuse;
       child.throughput *= sample.weight / static_cast<double>(branches);
@@ -402,6 +403,7 @@ class VertexShader {
   const EmitterReceiver* origin_;
   ShadingSinks& sinks_;
   const PathCone* cone_;
+  const CasterCones* seen_ = nullptr;  ///< where directions are drawn towards casters, too
   double covered_ = 0.0;  ///< width of what the path's pixel covers here, metres
 };
 

@@ -6,6 +6,7 @@
 
 #include "path_stream.hpp"
 #include "shadow_queue.hpp"
+#include "raykiln/shading/caster_cones.hpp"
 #include "transport.hpp"
 
 namespace raykiln::render {
@@ -18,6 +19,7 @@ struct ShadingSinks {
   RenderStats& stats;
   const std::stop_token& stop;
   Material painted{};  ///< scratch: a material with its textures at one point
+  CasterCones seen{};  ///< scratch: bodies as one surface point sees them
   bool stopped = false;  ///< stop was seen: the outcome is worthless, return soon
 };
 

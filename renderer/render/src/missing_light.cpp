@@ -52,7 +52,7 @@ std::vector<PathStart> spread(const RenderSettings& settings, std::uint64_t prob
 class Probe {
  public:
   Probe(const PreparedScene& scene, const RenderSettings& settings)
-      : tracer_({scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids()}, camera_rays(scene, settings),
+      : tracer_(transport_scene(scene), camera_rays(scene, settings),
                 path_settings(scene, settings)) {}
 
   /// Appends a mean over the channels for each start.

@@ -91,7 +91,7 @@ TileResult render_tile(const PreparedScene& scene, const RenderSettings& setting
     return result;
   }
   const CameraRays camera = camera_rays(scene, settings);
-  PathTracer tracer({scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids()}, camera,
+  PathTracer tracer(transport_scene(scene), camera,
                     path_settings(scene, settings));
   std::vector<PathStart> starts;
   std::vector<PathResult> paths;

@@ -7,7 +7,7 @@ namespace raykiln::render {
 ReplayedSample replay_sample(const PreparedScene& scene, const RenderSettings& settings, int x,
                              int y, std::uint64_t sample) {
   const CameraRays camera = camera_rays(scene, settings);
-  PathTracer tracer({scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids()}, camera,
+  PathTracer tracer(transport_scene(scene), camera,
                     path_settings(scene, settings));
   const PathStart start{x, y, sample};
   PathResult path;

@@ -63,9 +63,12 @@ CameraRays camera_rays(const PreparedScene& scene, const RenderSettings& setting
   return {camera, settings.crop->full_width, settings.crop->full_height, geometry};
 }
 
+TransportScene transport_scene(const PreparedScene& scene) {
+  return {scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids(), scene.casters()};
+}
+
 bool make_ready(const PreparedScene& scene, const RenderSettings& settings, const std::stop_token& stop) {
-  const TransportScene transport{scene.scene(), scene.tree(), scene.emitters(), &scene.pyramids()};
-  return make_ready(transport, path_settings(scene, settings), stop);
+  return make_ready(transport_scene(scene), path_settings(scene, settings), stop);
 }
 
 }  // namespace raykiln::render

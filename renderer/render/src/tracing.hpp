@@ -15,4 +15,7 @@ namespace raykiln::render {
 [[nodiscard]] bool make_ready(const PreparedScene& scene, const RenderSettings& settings, const std::stop_token& stop);
 [[nodiscard]] CameraRays camera_rays(const PreparedScene& scene, const RenderSettings& settings);
 
+/// What paths are traced through. Lives as long as `scene`.
+[[nodiscard]] TransportScene transport_scene(const PreparedScene& scene);
+
 }  // namespace raykiln::render

@@ -272,6 +272,9 @@ BsdfValue evaluate(const OpaqueBsdf& b, const Vec3f& wi) {
 BsdfSample sample_bsdf(const Bsdf& b, const DirectionNumbers& numbers) {
   return sample<Sides::kBoth>(b, GivenNumbers{numbers});
 }
+BsdfSample sample_bsdf(const OpaqueBsdf& b, const DirectionNumbers& numbers) {
+  return sample<Sides::kNear>(b, GivenNumbers{numbers});
+}
 BsdfSample sample_bsdf(const Bsdf& b, const VertexKey& vertex) {
   return sample<Sides::kBoth>(b, NumbersOnDemand{vertex});
 }

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "raykiln/integrator/path_tracer.hpp"
+#include "support/effect_scenes.hpp"
 #include "support/scene_pieces.hpp"
 
 namespace raykiln::render {
@@ -88,6 +90,58 @@ TEST_F(PathTracerTest, DepthZeroSeesLampsAndPointLightsOnly) {
   EXPECT_EQ(stats.bounce_rays, 0U);
   EXPECT_LE(stats.shadow_rays, stats.camera_rays);
   EXPECT_GT(stats.shadow_rays, 0U);
+}
+
+/// Luminance of samples with at most 5 reflections.
+struct Spread {
+  double mean = 0.0, variance = 0.0;  ///< of one sample
+  double relative = 0.0;              ///< mean over pixels of variance over squared mean
+};
+Spread spread_of(const Scene& scene, const KdTree& tree, std::span<const CausticCaster> casters, std::uint64_t first) {
+  const Emitters emitters(scene);
+  PathSettings settings;
+  settings.max_depth = 5;
+  PathTracer tracer({scene, tree, emitters, nullptr, casters}, CameraRays(scene.cameras[0], 16, 16, bounds(tree)), settings);
+  std::vector<PathStart> starts;
+  constexpr int kSamples = 512;
+  for (int i = 0; i < 256 * kSamples; ++i) starts.push_back({i % 16, i / 16 % 16, first + static_cast<std::uint64_t>(i / 256)});
+  std::vector<PathResult> results(starts.size());
+  RenderStats stats;
+  EXPECT_TRUE(tracer.trace(starts, results, stats, {}));
+  std::vector<double> sum(256), square(256);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const double y = luminance(results[i].radiance());
+    sum[i % 256] += y;
+    square[i % 256] += y * y;
+  }
+  Spread spread;
+  for (std::size_t p = 0; p < 256; ++p) {
+    const double mean = sum[p] / kSamples;
+    spread.mean += mean / 256;
+    const double variance = square[p] / kSamples - mean * mean;
+    spread.variance += variance / 256;
+    spread.relative += variance / (mean * mean) / 256;
+  }
+  return spread;
+}
+
+// 4 sigma of the difference of the two means: false alarm 6.3e-5.
+TEST(CausticCastersInRooms, AreFoundMoreOftenWithTheSameMean) {
+  support::SceneBuilder b;
+  b.box(Vec3f(-1.0F), Vec3f(1.0F), b.material(support::diffuse_material(Rgb(0.6F))), true);
+  b.quad({Vec3f(-0.25F, 0.999F, -0.25F), {0.25F, 0.999F, -0.25F}, {0.25F, 0.999F, 0.25F}, {-0.25F, 0.999F, 0.25F}},
+         b.material(support::diffuse_material(Rgb(0.0F), Rgb(10.0F))));
+  support::add_ball(b, {-0.5F, -0.8F, -0.5F}, 0.2F, 8, b.material(support::glass_material(1.5F, kLargestExponent)), false);
+  support::add_ball(b, {0.1F, -0.5F, 0.0F}, 0.4F, 12, b.material(support::mirror_material(0.9F, kLargestExponent)), false);
+  b.camera({0, 0, 0.99F}, {0, 0.2F, -1}, {0, 1, 0}, 1.8F);
+  const Scene scene = b.scene();
+  SerialTaskRunner runner;
+  const auto tree = build_scene_tree(scene, {}, runner);
+  const std::vector<CausticCaster> casters = find_caustic_casters(scene);
+  ASSERT_EQ(casters.size(), 2U);
+  const Spread with = spread_of(scene, *tree, casters, 0), without = spread_of(scene, *tree, {}, 512);
+  EXPECT_NEAR(with.mean, without.mean, 4.0 * std::sqrt((with.variance + without.variance) / (256.0 * 512.0)));
+  EXPECT_LT(with.relative, 0.85 * without.relative);
 }
 
 TEST(RaysOfOnePath, IsTheGeometricSum) {

@@ -14,6 +14,7 @@
 #include "raykiln/integrator/render_stats.hpp"
 #include "raykiln/scene/scene.hpp"
 #include "raykiln/shading/bsdf.hpp"
+#include "raykiln/shading/caustic_casters.hpp"
 #include "raykiln/shading/emitters.hpp"
 #include "raykiln/shading/texture_pyramid.hpp"
 
@@ -25,6 +26,7 @@ struct TransportScene {
   const KdTree& tree;
   const Emitters& emitters;
   const TexturePyramids* pyramids = nullptr;  ///< of its textures; null: they are read exactly, whatever is asked for
+  std::span<const CausticCaster> casters{};   ///< towards which diffuse surfaces draw directions, too, where triangles shine
 };
 
 struct PathSettings {

@@ -100,6 +100,7 @@ struct DirectionNumbers {
 [[nodiscard]] DirectionNumbers direction_numbers(const VertexKey& vertex);
 
 [[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const DirectionNumbers& numbers);
+[[nodiscard]] BsdfSample sample_bsdf(const OpaqueBsdf& bsdf, const DirectionNumbers& numbers);
 
 /// With the direction_numbers of the vertex.
 [[nodiscard]] BsdfSample sample_bsdf(const Bsdf& bsdf, const VertexKey& vertex);

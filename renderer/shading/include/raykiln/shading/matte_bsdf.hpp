@@ -48,17 +48,22 @@ BsdfValue evaluate(const MatteBsdf<kNormals>& b, const Vec3f& wi) {
   return {b.diffuse * cos_i, pdf};
 }
 
-/// With dimensions kDirectionU and kDirectionV.
 template <bool kNormals>
-BsdfSample sample_bsdf(const MatteBsdf<kNormals>& b, const VertexKey& vertex) {
-  const double u = uniform(vertex, Dimension::kDirectionU);
-  const double v = uniform(vertex, Dimension::kDirectionV);
+BsdfSample sample_bsdf(const MatteBsdf<kNormals>& b, const DirectionNumbers& numbers) {
+  const auto [lobe, side, u, v] = numbers;
   const double x = b.sampling == DiffuseSampling::kCosine ? sample_cosine_one_minus_cos(u)
                                                           : sample_one_minus_cos(u, 0.0);
   const Vec3f wi = around_axis(kNormals ? b.n : b.ng, x, v);
   const BsdfValue value = evaluate(b, wi);
   if (value.f_cos == Rgbd(0.0)) return {};
   return {.wi = wi, .weight = value.f_cos / value.pdf, .pdf = value.pdf, .lobe = Lobe::kDiffuse};
+}
+
+/// With dimensions kDirectionU and kDirectionV.
+template <bool kNormals>
+BsdfSample sample_bsdf(const MatteBsdf<kNormals>& b, const VertexKey& vertex) {
+  return sample_bsdf(b, DirectionNumbers{.u = uniform(vertex, Dimension::kDirectionU),
+                                         .v = uniform(vertex, Dimension::kDirectionV)});
 }
 
 }  // namespace raykiln::render

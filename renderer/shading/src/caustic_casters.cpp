@@ -1,0 +1,131 @@
+#include "raykiln/shading/caustic_casters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace raykiln::render {
+namespace {
+
+constexpr std::size_t kMostTriangles = std::size_t{1} << 22;
+constexpr double kSharpExponent = 1e4;   ///< a lobe some hundredth of a radian wide
+constexpr double kSharpRoughness = 0.1;  ///< alpha 0.01
+constexpr double kLeastShare = 0.5;      ///< of the light that the surface meets
+
+double largest_channel(const Rgb& c) { return static_cast<double>(std::max({c.x, c.y, c.z})); }
+
+/// Who belongs together, by a forest whose roots are the smallest of each tree.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+std::vector<std::uint32_t> triangles_that_cast(const Scene& scene) {
+  std::vector<std::uint32_t> found;
+  std::vector<char> casts;
+  for (const Material& material : scene.materials) casts.push_back(casts_caustics(material) ? 1 : 0);
+  if (std::find(casts.begin(), casts.end(), 1) == casts.end()) return found;
+  for (std::uint32_t id = 0; id < scene.mesh.triangles.size(); ++id) {
+    if (casts[scene.mesh.material_ids[id]] != 0) found.push_back(id);
+  }
+  return found;
+}
+
+/// The positions that these triangles use, in rising order of place; equal places stand side by side.
+std::vector<std::uint32_t> corners_by_place(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::uint32_t> corners;
+  corners.reserve(3 * triangles.size());
+  for (const std::uint32_t id : triangles) corners.insert(corners.end(), mesh.triangles[id].begin(), mesh.triangles[id].end());
+  const auto place = [&](std::uint32_t c) {
+    const Vec3f& p = mesh.positions[c];
+    return std::tuple(p.x, p.y, p.z, c);
+  };
+  std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+/// The number of the body of each of `triangles`, from 0 on in the order of their first triangles.
+std::vector<std::uint32_t> bodies_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::uint32_t> body(triangles.size(), 0);
+  if (triangles.size() > kMostTriangles) return body;
+  Sets sets(mesh.positions.size());
+  const std::vector<std::uint32_t> corners = corners_by_place(mesh, triangles);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (mesh.positions[corners[i - 1]] == mesh.positions[corners[i]]) sets.join(corners[i - 1], corners[i]);
+  }
+  for (const std::uint32_t id : triangles) {
+    const auto& c = mesh.triangles[id];
+    sets.join(c[0], c[1]);
+    sets.join(c[0], c[2]);
+  }
+  constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
+  std::uint32_t next = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::uint32_t& n = number[sets.root(mesh.triangles[triangles[i]][0])];
+    if (n == kNone) n = next++;
+    body[i] = n;
+  }
+  return body;
+}
+
+std::vector<CausticCaster> spheres_about(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles,
+                                         const std::vector<std::uint32_t>& body) {
+  const std::size_t count = triangles.empty() ? 0 : std::size_t{*std::max_element(body.begin(), body.end())} + 1;
+  std::vector<Bounds3f> boxes(count);
+  std::vector<CausticCaster> spheres(count);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (const std::uint32_t c : mesh.triangles[triangles[i]]) boxes[body[i]].grow(mesh.positions[c]);
+  }
+  for (std::size_t b = 0; b < count; ++b) spheres[b].centre = 0.5 * (Vec3d(boxes[b].lo) + Vec3d(boxes[b].hi));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    CausticCaster& sphere = spheres[body[i]];
+    for (const std::uint32_t c : mesh.triangles[triangles[i]]) {
+      sphere.radius = std::max(sphere.radius, length(Vec3d(mesh.positions[c]) - sphere.centre));
+    }
+  }
+  return spheres;
+}
+
+}  // namespace
+
+bool casts_caustics(const Material& material) {
+  const double mirrored = largest_channel(material.specular);
+  if (material.model == SurfaceModel::kPhong) {
+    return material.specular_exp >= kSharpExponent && mirrored >= kLeastShare;
+  }
+  return material.facets.roughness <= kSharpRoughness &&
+         (mirrored >= kLeastShare || static_cast<double>(material.transparent) >= kLeastShare);
+}
+
+std::vector<CausticCaster> find_caustic_casters(const Scene& scene) {
+  const std::vector<std::uint32_t> triangles = triangles_that_cast(scene);
+  std::vector<CausticCaster> spheres = spheres_about(scene.mesh, triangles, bodies_of(scene.mesh, triangles));
+  std::stable_sort(spheres.begin(), spheres.end(),
+                   [](const CausticCaster& a, const CausticCaster& b) { return a.radius > b.radius; });
+  std::vector<CausticCaster> kept;
+  for (const CausticCaster& sphere : spheres) {
+    const auto holds = [&](const CausticCaster& other) {
+      return length(sphere.centre - other.centre) + sphere.radius <= other.radius;
+    };
+    if (kept.size() == kMostCasters) break;
+    if (sphere.radius > 0.0 && std::none_of(kept.begin(), kept.end(), holds)) kept.push_back(sphere);
+  }
+  return kept;
+}
+
+}  // namespace raykiln::render
