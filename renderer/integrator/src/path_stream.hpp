@@ -18,7 +18,8 @@ namespace raykiln::render {
 struct PathState {
   PathKey key;
   Rgbd throughput{1.0};
-  /// What of the throughput is no loss: changes of medium, and one over the rays shot with it.
+  /// What of the throughput is no loss: changes of medium, what directions towards casters change of a density, and one
+  /// over the rays shot with it.
   double scale = 1.0;
   double pdf = 0.0;          ///< of the ray's direction times the rays shot with it, sr^-1
   std::uint64_t node = 0;    ///< number of the branch among those of its bounce

@@ -8,7 +8,7 @@
 namespace raykiln::render {
 namespace {
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 22;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 20;
 constexpr double kSharpExponent = 1e4;   ///< a lobe some hundredth of a radian wide
 constexpr double kSharpRoughness = 0.1;  ///< alpha 0.01
 constexpr double kLeastShare = 0.5;      ///< of the light that the surface meets
@@ -44,41 +44,53 @@ std::vector<std::uint32_t> triangles_that_cast(const Scene& scene) {
   return found;
 }
 
-/// The positions that these triangles use, in rising order of place; equal places stand side by side.
-std::vector<std::uint32_t> corners_by_place(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
+/// The positions that these triangles use, ascending.
+std::vector<std::uint32_t> corners_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
   std::vector<std::uint32_t> corners;
   corners.reserve(3 * triangles.size());
   for (const std::uint32_t id : triangles) corners.insert(corners.end(), mesh.triangles[id].begin(), mesh.triangles[id].end());
-  const auto place = [&](std::uint32_t c) {
-    const Vec3f& p = mesh.positions[c];
-    return std::tuple(p.x, p.y, p.z, c);
-  };
-  std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
+}
+
+/// Joins corners, by their number in the list, that lie in the same place.
+void join_places(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners, Sets& sets) {
+  std::vector<std::uint32_t> by_place(corners.size());
+  std::iota(by_place.begin(), by_place.end(), 0U);
+  const auto place = [&](std::uint32_t i) {
+    const Vec3f& p = mesh.positions[corners[i]];
+    return std::tuple(p.x, p.y, p.z);
+  };
+  std::sort(by_place.begin(), by_place.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  for (std::size_t i = 1; i < by_place.size(); ++i) {
+    if (place(by_place[i - 1]) == place(by_place[i])) sets.join(by_place[i - 1], by_place[i]);
+  }
 }
 
 /// The number of the body of each of `triangles`, from 0 on in the order of their first triangles.
 std::vector<std::uint32_t> bodies_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
   std::vector<std::uint32_t> body(triangles.size(), 0);
   if (triangles.size() > kMostTriangles) return body;
-  Sets sets(mesh.positions.size());
-  const std::vector<std::uint32_t> corners = corners_by_place(mesh, triangles);
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    if (mesh.positions[corners[i - 1]] == mesh.positions[corners[i]]) sets.join(corners[i - 1], corners[i]);
-  }
-  for (const std::uint32_t id : triangles) {
-    const auto& c = mesh.triangles[id];
-    sets.join(c[0], c[1]);
-    sets.join(c[0], c[2]);
+  const std::vector<std::uint32_t> corners = corners_of(mesh, triangles);
+  const auto number_of = [&](std::uint32_t corner) {
+    return static_cast<std::uint32_t>(std::lower_bound(corners.begin(), corners.end(), corner) - corners.begin());
+  };
+  Sets sets(corners.size());
+  join_places(mesh, corners, sets);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto& c = mesh.triangles[triangles[i]];
+    body[i] = number_of(c[0]);
+    sets.join(body[i], number_of(c[1]));
+    sets.join(body[i], number_of(c[2]));
   }
   constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
+  std::vector<std::uint32_t> renumbered(corners.size(), kNone);
   std::uint32_t next = 0;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    std::uint32_t& n = number[sets.root(mesh.triangles[triangles[i]][0])];
+  for (std::uint32_t& b : body) {
+    std::uint32_t& n = renumbered[sets.root(b)];
     if (n == kNone) n = next++;
-    body[i] = n;
+    b = n;
   }
   return body;
 }

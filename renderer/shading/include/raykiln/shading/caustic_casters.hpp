@@ -21,7 +21,7 @@ inline constexpr std::size_t kMostCasters = 8;
 [[nodiscard]] bool casts_caustics(const Material& material);
 
 /// Connected triangles of such materials are a body: where corners lie in the same place. Bodies within the sphere
-/// of another are part of it; of more than kMostCasters the largest are taken. Beyond four million triangles all are
+/// of another are part of it; of more than kMostCasters the largest are taken. Beyond a million (2^20) triangles all are
 /// one body, so that memory and time stay bounded. The order depends on the scene alone.
 [[nodiscard]] std::vector<CausticCaster> find_caustic_casters(const Scene& scene);
 
