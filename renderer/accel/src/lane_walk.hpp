@@ -172,7 +172,8 @@ class LaneWalk {
   }
 
   // A leaf with triangles is visited in the turn after the one that finds it: its block has the
-  // other groups' time to come from memory. Meanwhile the lane stands at an empty leaf.
+  // other groups' time to come from memory. Meanwhile the lane stands at an empty leaf. In a tree that
+  // caches hold there is nothing to wait for.
   void step(Group& group) {
     const std::uint32_t waiting = group.waiting;
     const Leaves found = descend(group);
@@ -182,9 +183,13 @@ class LaneWalk {
     counts_.lane_slots += V::kWidth;
     counts_.node_steps += static_cast<std::uint32_t>(__builtin_popcount(walking)) - in_leaf;
     counts_.leaf_visits += in_leaf;
-    group.waiting = found.filled & walking;
-    prefetch_blocks(group);
-    for (std::uint32_t rest = waiting; rest != 0; rest &= rest - 1) {
+    const std::uint32_t filled = found.filled & walking;
+    const std::uint32_t due = at_once_ ? filled : waiting;
+    if (!at_once_) {
+      group.waiting = filled;
+      prefetch_blocks(group);
+    }
+    for (std::uint32_t rest = due; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
       if (visit_leaf(group, lane) || !pop(group, lane)) take_ray(group, lane);
     }
@@ -192,7 +197,7 @@ class LaneWalk {
       const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
       if (!pop(group, lane)) take_ray(group, lane);
     }
-    V::prefetch_nodes(query_.nodes, group.node);
+    if (!at_once_) V::prefetch_nodes(query_.nodes, group.node);
   }
 
   [[gnu::always_inline]] void prefetch_blocks(const Group& group) const {
@@ -270,6 +275,7 @@ class LaneWalk {
   Source source_;
   Leaf leaf_;
   Packets packet_;
+  const bool at_once_ = query_.node_count <= V::kCachedNodes;  ///< leaves do not wait, nothing is fetched ahead
   Group groups_[kGroups];
 };
 

@@ -35,6 +35,7 @@ struct Lanes16 {
   static constexpr std::uint32_t kWidth = 16;
   static constexpr bool kFetchesMore = true;   ///< of leaves and rays, see fetch_leaf
   static constexpr bool kGoesOn = true;  ///< past the edge functions of a block, see LeafVisit
+  static constexpr std::uint64_t kCachedNodes = 16384;  ///< of a tree that is walked as if caches held all of it
   using F = __m512;
   using I = __m512i;
   using M = __mmask16;

@@ -38,6 +38,7 @@ struct Lanes8 {
   static constexpr std::uint32_t kWidth = 8;
   static constexpr bool kFetchesMore = false;  ///< not measured; gated instructions would rise
   static constexpr bool kGoesOn = false;  ///< past the edge functions of a block, see LeafVisit
+  static constexpr std::uint64_t kCachedNodes = 8192;  ///< of a tree that is walked as if caches held all of it
   using F = __m256;
   using I = __m256i;
   using M = __m256;  ///< all bits of a lane, or none
