@@ -3,7 +3,7 @@
 #pragma once
 
 #include "axis_query.hpp"
-#include "lane_surface.hpp"
+#include "lane_vertices.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -19,11 +19,7 @@ inline V3f select(I64 m, const V3f& a, const V3f& b) {
 inline I64 select(I64 m, I64 a, I64 b) { return (m & a) | (~m & b); }
 inline V3f operator-(const V3f& a) { return {-a.x, -a.y, -a.z}; }
 inline V3f zero_vector() { return {F32{}, F32{}, F32{}}; }
-inline bool any(I64 m) {
-  std::int64_t found = 0;
-  for (int i = 0; i < kLanes; ++i) found |= m[i];
-  return found != 0;
-}
+inline bool any(I64 m) { return bits_of(m) != 0; }
 
 struct LaneFresnel {
   F64 reflectance, cos_t;
@@ -45,91 +41,66 @@ inline LaneFresnel fresnel_of(F64 cos_from, F64 eta_from, F64 eta_to) {
   return {select(equal, F64{}, select(total, all(1.0), part)), cos_t, total};
 }
 
-/// A ray that goes on in each lane, as far as it does not depend on the next surface.
-struct LaneScatter {
-  V3f wi;
-  V3 throughput;
-  F64 pdf, scale;
-  I64 goes_on;
-};
-
 class AxisBatch {
  public:
-  AxisBatch(const AxisQuery& query, AxisCounts& counts, std::size_t first) : query_(query), counts_(counts) {
-    const std::size_t left = query.chosen_count - first;
-    count_ = left < kLanes ? static_cast<int>(left) : kLanes;
-    for (int i = 0; i < kLanes; ++i) index_[i] = query.chosen[first + static_cast<std::size_t>(i < count_ ? i : 0)];
-  }
+  AxisBatch(const AxisQuery& query, AxisCounts& counts, std::size_t first)
+      : query_(query), counts_(counts), chosen_(choose(query, first)) {}
 
   void run() {
     read();
     look_across();
     const I64 found = light_may_come();
-    for (int i = 0; i < count_; ++i) {
-      if (found[i] != 0) query_.left[counts_.left++] = index_[i];
+    if (const std::uint32_t bits = bits_of(found); bits != 0) {
+      for (int i = 0; i < kLanes; ++i) {
+        if ((bits >> i & 1U) != 0) query_.left[counts_.left++] = chosen_.index[i];
+      }
     }
     active_ &= ~found;
-    LaneScatter next = scatter();
+    LaneNext next = scatter();
     if (query_.roulette) play(next);
-    const V3f from = ray_origins(point_, wide(next.wi));
-    for (int i = 0; i < count_; ++i) {
-      if (next.goes_on[i] != 0) push_next(next, from, i);
-    }
+    next.from = ray_origins(point_, wide(next.wi));
+    next.p = narrow(point_.p);
+    next.normal = ng_;
+    next.both_sides = transparent_ > 0.0;
+    push_paths(query_, counts_, chosen_, path_, ids_, next);
   }
 
  private:
-  [[nodiscard]] const LanePath& path(int lane) const { return query_.paths[index_[lane]]; }
+  [[nodiscard]] const LanePath& path(int lane) const { return query_.paths[chosen_.index[lane]]; }
 
   void read() {
-    alignas(64) double through[3][kLanes], materials[8][kLanes];
-    alignas(64) float barycentrics[2][kLanes], d[3][kLanes];
-    alignas(64) std::int64_t active[kLanes];
-    std::uint32_t (&ids)[kLanes] = ids_;
-    for (int i = 0; i < kLanes; ++i) {
-      const LaneHit& hit = query_.hits[index_[i]];
-      const LaneAxisMaterial& m = query_.materials[query_.material_ids[hit.id]];
-      for (int k = 0; k < 3; ++k) {
-        through[k][i] = path(i).throughput[k];
-        d[k][i] = query_.rays[index_[i]].d[k];
-        materials[k][i] = m.opaque[k];
-        materials[3 + k][i] = m.clear[k];
-      }
-      materials[6][i] = m.transparent;
-      materials[7][i] = m.index;
-      barycentrics[0][i] = hit.u;
-      barycentrics[1][i] = hit.v;
-      ids[i] = hit.id;
-      active[i] = i < count_ ? -1 : 0;
-    }
-    const F64 u = wide(load<F32>(barycentrics[0])), v = wide(load<F32>(barycentrics[1]));
-    point_ = points_on(query_.mesh, ids, u, v);
+    const LaneHits hits = read_hits(query_, chosen_, ids_);
+    const auto row = [&](int i) {
+      return reinterpret_cast<const std::uint64_t*>(&query_.materials[query_.material_ids[ids_[i]]]);
+    };
+    const Fours<U64> low = read_fours<U64>(row), high = read_fours<U64>([&](int i) { return row(i) + 4; });
+    point_ = points_on(query_.mesh, ids_, hits.u, hits.v);
     ng_ = narrow(point_.ng);
-    n_ = shading_normals(ids, u, v);
-    wo_ = {wide(-load<F32>(d[0])), wide(-load<F32>(d[1])), wide(-load<F32>(d[2]))};
-    throughput_ = {load<F64>(through[0]), load<F64>(through[1]), load<F64>(through[2])};
-    opaque_ = {load<F64>(materials[0]), load<F64>(materials[1]), load<F64>(materials[2])};
-    clear_ = {load<F64>(materials[3]), load<F64>(materials[4]), load<F64>(materials[5])};
-    transparent_ = load<F64>(materials[6]);
-    index_behind_ = load<F64>(materials[7]);
-    active_ = load<I64>(active);
+    n_ = shading_normals(ids_, hits.u, hits.v);
+    wo_ = hits.wo;
+    path_ = read_paths(query_, chosen_);
+    opaque_ = {as<F64>(low.v[0]), as<F64>(low.v[1]), as<F64>(low.v[2])};
+    clear_ = {as<F64>(low.v[3]), as<F64>(high.v[0]), as<F64>(high.v[1])};
+    transparent_ = as<F64>(high.v[2]);
+    index_behind_ = as<F64>(high.v[3]);
+    active_ = active_lanes(chosen_);
   }
 
   /// interpolated_normal() where there is one.
   [[nodiscard]] V3f shading_normals(const std::uint32_t (&ids)[kLanes], F64 u, F64 v) const {
     if (query_.corner_normals == nullptr) return ng_;
-    alignas(64) float at[3][3][kLanes];
     alignas(64) std::int64_t smooth[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       const std::uint32_t* corners = query_.corner_normals + std::size_t{3} * ids[i];
       constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-      const bool has = corners[0] != kNone && corners[1] != kNone && corners[2] != kNone;
-      smooth[i] = has ? -1 : 0;
-      for (int c = 0; c < 3; ++c) {
-        for (int k = 0; k < 3; ++k) at[c][k][i] = has ? query_.normals[std::size_t{3} * corners[c] + static_cast<std::size_t>(k)] : 0.0F;
-      }
+      smooth[i] = corners[0] != kNone && corners[1] != kNone && corners[2] != kNone ? -1 : 0;
     }
     V3 n[3];
-    for (int c = 0; c < 3; ++c) n[c] = {wide(load<F32>(at[c][0])), wide(load<F32>(at[c][1])), wide(load<F32>(at[c][2]))};
+    for (std::size_t c = 0; c < 3; ++c) {
+      n[c] = wide(read_threes([&](int i) {  // where there is none, any will do
+        return query_.normals + (smooth[i] != 0 ? std::size_t{3} * query_.corner_normals[std::size_t{3} * ids[i] + c] : 0);
+      }));
+    }
     const V3 sum = (1.0 - u - v) * n[0] + u * n[1] + v * n[2];
     const F64 squared = dot(sum, sum);
     return select(load<I64>(smooth) & (squared > 0.0), narrow(sum / root(squared)), ng_);
@@ -211,9 +182,9 @@ class AxisBatch {
   }
 
   /// sample_bsdf(): the axis itself, its value and density.
-  LaneScatter scatter() {
+  LaneNext scatter() {
     const I64 through = choose_sides();
-    LaneScatter next;
+    LaneNext next;
     next.wi = select(through, refracted_, mirror_);
     const F64 side = dot(wide(ng_), wide(next.wi));
     const F64 peak = all(query_.peak);
@@ -231,10 +202,8 @@ class AxisBatch {
       there = select(through, (side < 0.0) & (cos_t > 0.0), there);
     }
     next.goes_on = active_ & there & ~is_zero(f_cos);
-    next.throughput = throughput_ * (f_cos / next.pdf);
-    alignas(64) double scale[kLanes];
-    for (int i = 0; i < kLanes; ++i) scale[i] = path(i).scale;
-    next.scale = load<F64>(scale) * next.scale;
+    next.throughput = path_.throughput * (f_cos / next.pdf);
+    next.scale = path_.scale * next.scale;
     return next;
   }
 
@@ -248,9 +217,9 @@ class AxisBatch {
   }
 
   /// survives_roulette() of each lane.
-  void play(LaneScatter& next) {
+  void play(LaneNext& next) {
     const F64 most = largest(next.throughput);
-    for (int i = 0; i < count_; ++i) {
+    for (int i = 0; i < chosen_.count; ++i) {
       const std::uint32_t reflections = path(i).bounce + 1U;
       if (next.goes_on[i] == 0 || reflections <= query_.bounces_before_roulette) continue;
       const double p = query_.roulette_factor * most[i] / next.scale[i];
@@ -266,33 +235,15 @@ class AxisBatch {
     }
   }
 
-  void push_next(const LaneScatter& next, const V3f& from, int i) {
-    const double t[3] = {next.throughput.x[i], next.throughput.y[i], next.throughput.z[i]};
-    const LanePath& before = path(i);
-    if (poisons(t, query_.emitted + before.slot * query_.emitted_stride)) return;
-    const std::size_t n = counts_.next++;
-    const V3f& wi = next.wi;
-    query_.next_rays[n] = {{from.x[i], from.y[i], from.z[i]}, 0.0F, {wi.x[i], wi.y[i], wi.z[i]}, __builtin_inff()};
-    query_.next_from[n] = ids_[i];
-    LanePath& after = query_.next_paths[n];
-    after = before;
-    for (int k = 0; k < 3; ++k) after.throughput[k] = t[k];
-    after.scale = next.scale[i];
-    after.pdf = next.pdf[i];
-    after.bounce = static_cast<std::uint16_t>(before.bounce + 1);
-    if (query_.next_origins == nullptr) return;
-    const V3f p = narrow(point_.p);
-    query_.next_origins[n] = {{p.x[i], p.y[i], p.z[i]}, {ng_.x[i], ng_.y[i], ng_.z[i]}, transparent_[i] > 0.0};
-  }
-
   const AxisQuery& query_;
   AxisCounts& counts_;
-  int count_ = 0;
-  std::uint32_t index_[kLanes], ids_[kLanes];  ///< of the paths; of the triangles that they met
+  LaneChoice chosen_;
+  std::uint32_t ids_[kLanes];  ///< of the triangles that the paths met
+  LanePaths path_;
   LanePoint point_;
   V3f ng_, n_;  ///< on the side of the viewer
   V3f mirror_, refracted_;
-  V3 wo_, throughput_, opaque_, clear_;
+  V3 wo_, opaque_, clear_;
   F64 transparent_, index_behind_, cos_o_, eta_o_, eta_t_, radiance_scale_, through_share_;
   LaneFresnel border_;
   I64 active_;  ///< lanes with a vertex

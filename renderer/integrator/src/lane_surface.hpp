@@ -2,8 +2,8 @@
 // frame.hpp and warp.cpp say why; the order of operations here is theirs, and so is every bit.
 #pragma once
 
-#include "lane_numbers.hpp"
 #include "lane_path.hpp"
+#include "lane_rows.hpp"
 #include "raykiln/sampling/turn_series.hpp"
 
 namespace raykiln::render {
@@ -50,17 +50,9 @@ inline void move_inwards(LanePoint& point, const V3 (&p)[3], const F64 (&b)[3], 
 }
 
 inline LanePoint points_on(const LaneMesh& mesh, const std::uint32_t (&ids)[kLanes], F64 u, F64 v) {
-  alignas(64) float at[3][3][kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    const std::uint32_t* corners = mesh.triangles + std::size_t{3} * ids[i];
-    for (int c = 0; c < 3; ++c) {
-      const float* position = mesh.positions + std::size_t{3} * corners[c];
-      for (int k = 0; k < 3; ++k) at[c][k][i] = position[k];
-    }
-  }
   V3 p[3];
-  for (int c = 0; c < 3; ++c) {
-    p[c] = {wide(load<F32>(at[c][0])), wide(load<F32>(at[c][1])), wide(load<F32>(at[c][2]))};
+  for (std::size_t c = 0; c < 3; ++c) {
+    p[c] = wide(read_threes([&](int i) { return mesh.positions + std::size_t{3} * mesh.triangles[std::size_t{3} * ids[i] + c]; }));
   }
   const F64 b[3] = {1.0 - u - v, u, v};
   const V3 part[3] = {b[0] * p[0], b[1] * p[1], b[2] * p[2]};
@@ -114,15 +106,6 @@ inline V3f ray_ends(const LanePoint& point, const V3& origin) {
   const F64 sinks = 2.0 * kUnit * dot(absolute(point.ng), way) + 16.0 * 0x1p-53 * largest(way);
   const F64 height = point.clearance + sinks;
   return lifted(point, select(dot(point.ng, origin - point.p) < 0.0, -height, height));
-}
-
-/// A throughput that is not finite is added to what its sample found, which is then dropped and counted: true.
-inline bool poisons(const double (&throughput)[3], double* emitted) {
-  bool finite = true;
-  for (const double channel : throughput) finite = finite && channel - channel == 0.0;
-  if (finite) return false;
-  for (int k = 0; k < 3; ++k) emitted[k] += throughput[k];
-  return true;
 }
 
 struct Turns {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lane_casters.hpp"
-#include "lane_surface.hpp"
+#include "lane_vertices.hpp"
 #include "matte_query.hpp"
 
 namespace raykiln::render {
@@ -14,7 +14,7 @@ struct LaneVertex {
   V3f ng;      ///< on the side of the viewer
   V3 normal;   ///< the same in double
   V3 diffuse;  ///< over pi
-  V3 throughput;
+  LanePaths path;
   Keys key;
   I64 active;  ///< lanes with a vertex
 };
@@ -32,23 +32,17 @@ inline LaneValue evaluate(const LaneVertex& vertex, const V3& wi) {
   return {cos_i * vertex.diffuse, cos_i / kLanePi};
 }
 
+constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
+
 inline V3 materials_of(const float* table, const std::uint32_t (&materials)[kLanes]) {
-  alignas(64) float at[3][kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    for (int k = 0; k < 3; ++k) at[k][i] = table[std::size_t{3} * materials[i] + static_cast<std::size_t>(k)];
-  }
-  return {wide(load<F32>(at[0])), wide(load<F32>(at[1])), wide(load<F32>(at[2]))};
+  return wide(read_threes([&](int i) { return table + std::size_t{3} * materials[i]; }));
 }
 
 /// A batch of a query: where it reads, and the parts of paths as it needs them.
 class MatteBatch {
  public:
   MatteBatch(const MatteQuery& query, MatteCounts& counts, std::size_t first)
-      : query_(query), counts_(counts) {
-    const std::size_t left = query.chosen_count - first;
-    count_ = left < kLanes ? static_cast<int>(left) : kLanes;
-    for (int i = 0; i < kLanes; ++i) index_[i] = query.chosen[first + static_cast<std::size_t>(i < count_ ? i : 0)];
-  }
+      : query_(query), counts_(counts), chosen_(choose(query, first)) {}
 
   void run() {
     LaneVertex vertex = read();
@@ -59,60 +53,43 @@ class MatteBatch {
   }
 
  private:
-  [[nodiscard]] const LanePath& path(int lane) const { return query_.paths[index_[lane]]; }
-
   LaneVertex read() {
-    alignas(64) std::uint64_t words[5][kLanes];
-    alignas(64) double through[3][kLanes];
-    alignas(64) float barycentrics[2][kLanes], d[3][kLanes];
-    std::uint32_t (&ids)[kLanes] = ids_, materials[kLanes];
-    for (int i = 0; i < kLanes; ++i) {
-      const LanePath& p = path(i);
-      const LaneHit& hit = query_.hits[index_[i]];
-      const LaneRay& ray = query_.rays[index_[i]];
-      words[0][i] = p.key_a;
-      words[1][i] = p.key_b;
-      words[2][i] = p.point;
-      words[3][i] = p.node;
-      words[4][i] = p.bounce;
-      for (int k = 0; k < 3; ++k) {
-        through[k][i] = p.throughput[k];
-        d[k][i] = ray.d[k];
-      }
-      barycentrics[0][i] = hit.u;
-      barycentrics[1][i] = hit.v;
-      ids[i] = hit.id;
-      materials[i] = query_.material_ids[hit.id];
-    }
+    const LaneHits hits = read_hits(query_, chosen_, ids_);
+    std::uint32_t materials[kLanes];
+    for (int i = 0; i < kLanes; ++i) materials[i] = query_.material_ids[ids_[i]];
     LaneVertex vertex;
-    vertex.point = points_on(query_.mesh, ids, wide(load<F32>(barycentrics[0])), wide(load<F32>(barycentrics[1])));
+    vertex.point = points_on(query_.mesh, ids_, hits.u, hits.v);
     const V3f ng = narrow(vertex.point.ng);
-    const V3 wo{wide(-load<F32>(d[0])), wide(-load<F32>(d[1])), wide(-load<F32>(d[2]))};
-    const I32 front = __builtin_convertvector(dot(wide(ng), wo) >= 0.0, I32);
+    const I32 front = __builtin_convertvector(dot(wide(ng), hits.wo) >= 0.0, I32);
     vertex.ng = {front ? ng.x : -ng.x, front ? ng.y : -ng.y, front ? ng.z : -ng.z};
     vertex.normal = wide(vertex.ng);
     vertex.diffuse = all(1.0 / kLanePi) * materials_of(query_.diffuse, materials);
-    vertex.throughput = {load<F64>(through[0]), load<F64>(through[1]), load<F64>(through[2])};
-    vertex.key = vertex_keys(load<U64>(words[0]), load<U64>(words[1]), load<U64>(words[2]),
-                             load<U64>(words[3]), load<U64>(words[4]));
-    alignas(64) std::int64_t active[kLanes];
-    for (int i = 0; i < kLanes; ++i) active[i] = i < count_ ? -1 : 0;
-    vertex.active = load<I64>(active);
+    vertex.path = read_paths(query_, chosen_);
+    vertex.key = vertex_keys(vertex.path.key_a, vertex.path.key_b, vertex.path.point, vertex.path.node,
+                             vertex.path.bounce);
+    vertex.active = active_lanes(chosen_);
     return vertex;
   }
 
+  /// As push_paths() does. `ends`: triangles on which they end, or null.
   void push_shadows(I64 mask, const V3f& from, const V3f& to, float t_max, const V3& light,
                     const std::uint32_t* ends) {
-    const V3f d = to - from;
+    const std::uint32_t bits = bits_of(mask);
+    const RayRows rays = ray_rows(from, to - from, t_max);
+    U64 slots;
+    for (int i = 0; i < kLanes; ++i) slots[i] = query_.paths[chosen_.index[i]].slot;
+    const auto lights = turned(Fours<U64>{{as<U64>(light.x), as<U64>(light.y), as<U64>(light.z), slots}});
+    std::size_t n = counts_.shadows;
+#pragma GCC unroll 8
     for (int i = 0; i < kLanes; ++i) {
-      if (mask[i] == 0) continue;
-      query_.shadow_rays[counts_.shadows] = {{from.x[i], from.y[i], from.z[i]}, 0.0F,
-                                             {d.x[i], d.y[i], d.z[i]}, t_max};
-      query_.shadow_from[counts_.shadows] = ids_[i];
-      if (ends != nullptr) query_.shadow_to[counts_.shadows] = ends[i];
-      query_.shadow_lights[counts_.shadows] = {{light.x[i], light.y[i], light.z[i]}, path(i).slot};
-      ++counts_.shadows;
+      if (i == chosen_.count) break;
+      write(rays, i, query_.shadow_rays[n]);
+      store(reinterpret_cast<std::uint64_t*>(&query_.shadow_lights[n]), row_of(lights, i));
+      query_.shadow_from[n] = ids_[i];
+      query_.shadow_to[n] = ends == nullptr ? kNoTriangle : ends[i];
+      n += bits >> i & 1U;
     }
+    counts_.shadows = n;
   }
 
   void light_from_place(const LaneVertex& vertex, const LanePointLight& light) {
@@ -120,7 +97,7 @@ class MatteBatch {
     const V3 way = place - vertex.point.p;
     const F64 distance2 = dot(way, way);
     const I64 apart = distance2 > 0.0;
-    for (int i = 0; i < count_; ++i) counts_.lights_at_hits += apart[i] == 0;
+    for (int i = 0; i < chosen_.count; ++i) counts_.lights_at_hits += apart[i] == 0;
     const V3 over = place - vertex.point.corner;
     const F64 height = dot(vertex.point.ng, over);
     const I64 level = absolute(height) <= 0x1p-50 * dot(absolute(vertex.point.ng), absolute(over));
@@ -133,7 +110,7 @@ class MatteBatch {
       arriving = larger(1.0 - ratio2 * ratio2, F64{}) * arriving;
     }
     const LaneValue value = evaluate(vertex, wide(narrow(wi)));
-    const V3 found = vertex.throughput * value.f_cos * arriving;
+    const V3 found = vertex.path.throughput * value.f_cos * arriving;
     const V3f to = narrow(place);
     push_shadows(vertex.active & apart & lit & ~is_zero(arriving) & ~is_zero(found),
                  ray_origins(vertex.point, wi), to, 1.0F - 16.0F * 0x1p-24F, found, nullptr);
@@ -191,7 +168,7 @@ class MatteBatch {
     const V3f p = narrow(vertex.point.p);
     for (int i = 0; i < kLanes; ++i) {
       LaneDraw drawn{0, 0.0};
-      if (i < count_) {
+      if (i < chosen_.count) {
         const LaneReceiver receiver{{p.x[i], p.y[i], p.z[i]},
                                     {vertex.ng.x[i], vertex.ng.y[i], vertex.ng.z[i]},
                                     false};
@@ -221,7 +198,7 @@ class MatteBatch {
     const LaneValue value = evaluate(vertex, rounded);
     const F64 ratio = found_pdf(rounded, value) / pdf;
     const F64 weight = 1.0 / (1.0 + ratio * ratio) / pdf;
-    const V3 found = weight * (vertex.throughput * value.f_cos * materials_of(query_.emission, materials));
+    const V3 found = weight * (vertex.path.throughput * value.f_cos * materials_of(query_.emission, materials));
     const I64 sent = vertex.active & (pdf_area > 0.0) & (distance2 > 0.0) & (cosine > 0.0) &
                      ~is_zero(value.f_cos) & ~is_zero(found);
     const V3f from = ray_origins(vertex.point, wi);
@@ -230,19 +207,15 @@ class MatteBatch {
 
   void look_for_casters(const LaneVertex& vertex) {
     if (query_.casters.count == 0) return;
-    alignas(64) std::int64_t open[kLanes];
-    for (int i = 0; i < kLanes; ++i) {
-      open[i] = path(i).bounce <= query_.casters.last_bounce ? -1 : 0;
-      mixes_ = mixes_ || open[i] != 0;
-    }
-    if (mixes_) see_casters(seen_, query_.casters, vertex.point.p, vertex.normal, load<I64>(open));
+    const I64 open = as<I64>(vertex.path.bounce) <= static_cast<std::int64_t>(query_.casters.last_bounce);
+    mixes_ = bits_of(open) != 0;
+    if (mixes_) see_casters(seen_, query_.casters, vertex.point.p, vertex.normal, open);
   }
 
   /// Of slot kLobeChoice, which at the first vertex of a path stands in another group (sobol::place_of).
   [[nodiscard]] F64 lobe_numbers(const LaneVertex& vertex) const {
-    alignas(64) std::uint64_t group[kLanes];
-    for (int i = 0; i < kLanes; ++i) group[i] = path(i).bounce == 0 ? 1 : 0;
-    return third_of(query_.sobol, vertex.key, load<U64>(group), 4, query_.sobol_third);
+    const U64 group = as<U64>(vertex.path.bounce == 0) & 1U;
+    return third_of(query_.sobol, vertex.key, group, 4, query_.sobol_third);
   }
 
   /// The density with which scatter() finds directions of these values.
@@ -258,65 +231,38 @@ class MatteBatch {
     const V3f wi = around_axes(axis, x, at.v);
     const V3 direction = wide(wi);
     const LaneValue value = evaluate(vertex, direction);
-    const F64 pdf = found_pdf(direction, value);
-    I64 goes_on = vertex.active & ~is_zero(value.f_cos);
-    V3 throughput = vertex.throughput * (value.f_cos / pdf);
-    alignas(64) double scale[kLanes];
-    for (int i = 0; i < kLanes; ++i) scale[i] = path(i).scale;
-    F64 scales = load<F64>(scale);
-    if (mixes_) scales *= value.pdf / pdf;
-    if (query_.roulette) goes_on &= survivors(vertex, goes_on, scales, throughput);
-    const V3f from = ray_origins(vertex.point, direction);
-    for (int i = 0; i < count_; ++i) {
-      if (goes_on[i] != 0) push_next(vertex, i, from, wi, throughput, scales[i], pdf[i]);
-    }
+    LaneNext next;
+    next.pdf = found_pdf(direction, value);
+    next.goes_on = vertex.active & ~is_zero(value.f_cos);
+    next.throughput = vertex.path.throughput * (value.f_cos / next.pdf);
+    next.scale = mixes_ ? vertex.path.scale * (value.pdf / next.pdf) : vertex.path.scale;
+    if (query_.roulette) play(vertex, next);
+    next.from = ray_origins(vertex.point, direction);
+    next.wi = wi;
+    next.p = narrow(vertex.point.p);
+    next.normal = vertex.ng;
+    next.both_sides = I64{};
+    push_paths(query_, counts_, chosen_, vertex.path, ids_, next);
   }
 
   /// survives_roulette() of each lane.
-  I64 survivors(const LaneVertex& vertex, I64 candidates, F64 scales, V3& throughput) {
-    alignas(64) std::int64_t plays[kLanes];
-    bool any = false;
-    for (int i = 0; i < kLanes; ++i) {
-      plays[i] = path(i).bounce + 1U > query_.bounces_before_roulette ? -1 : 0;
-      any = any || plays[i] != 0;
-    }
-    if (!any) return ~I64{};
-    const F64 p = query_.roulette_factor * larger(larger(throughput.x, throughput.y), throughput.z) / scales;
-    const I64 at_stake = load<I64>(plays) & (p < 1.0);
+  void play(const LaneVertex& vertex, LaneNext& next) {
+    const I64 plays = as<I64>(vertex.path.bounce) >= static_cast<std::int64_t>(query_.bounces_before_roulette);
+    if (bits_of(plays) == 0) return;
+    const F64 p = query_.roulette_factor * largest(next.throughput) / next.scale;
+    const I64 at_stake = plays & (p < 1.0);
     const I64 ends = at_stake & (third_of(query_.sobol, vertex.key, 3, 12, query_.sobol_third) >= p);
-    const I64 lost = ends & candidates;
-    for (int i = 0; i < kLanes; ++i) counts_.roulette_ends += lost[i] != 0;
-    throughput = select(at_stake, throughput / p, throughput);
-    return ~ends;
-  }
-
-  void push_next(const LaneVertex& vertex, int i, const V3f& from, const V3f& wi, const V3& throughput, double scale,
-                 double pdf) {
-    const double t[3] = {throughput.x[i], throughput.y[i], throughput.z[i]};
-    const LanePath& before = path(i);
-    if (poisons(t, query_.emitted + before.slot * query_.emitted_stride)) return;
-    const std::size_t n = counts_.next++;
-    query_.next_rays[n] = {{from.x[i], from.y[i], from.z[i]}, 0.0F, {wi.x[i], wi.y[i], wi.z[i]}, __builtin_inff()};
-    query_.next_from[n] = ids_[i];
-    LanePath& next = query_.next_paths[n];
-    next = before;
-    for (int k = 0; k < 3; ++k) next.throughput[k] = t[k];
-    next.scale = scale;
-    next.pdf = pdf;
-    next.bounce = static_cast<std::uint16_t>(before.bounce + 1);
-    if (query_.next_origins == nullptr) return;
-    const V3f p = narrow(vertex.point.p);
-    query_.next_origins[n] = {{p.x[i], p.y[i], p.z[i]},
-                              {vertex.ng.x[i], vertex.ng.y[i], vertex.ng.z[i]},
-                              false};
+    counts_.roulette_ends += static_cast<std::uint32_t>(__builtin_popcount(bits_of(ends & next.goes_on)));
+    next.throughput = select(at_stake, next.throughput / p, next.throughput);
+    next.goes_on &= ~ends;
   }
 
   const MatteQuery& query_;
   MatteCounts& counts_;
-  int count_ = 0;
+  LaneChoice chosen_;
   bool mixes_ = false;  ///< directions of some lane are drawn towards casters, too
   LaneCones seen_;      ///< set where that is so
-  std::uint32_t index_[kLanes], ids_[kLanes];  ///< of the paths; of the triangles that they met
+  std::uint32_t ids_[kLanes];  ///< of the triangles that the paths met
 };
 
 void shade_matte_lanes(const MatteQuery& query, MatteCounts& counts) {
