@@ -10,7 +10,7 @@
 namespace raykiln::render {
 
 /// Fewer rays in a call than this walk one by one: filling lanes would cost more than it saves.
-inline constexpr std::size_t kFewRays = 8;
+inline constexpr std::size_t kFewRays = 4;
 
 /// The kernel of a traversal that `resolve` returned; nullptr for the scalar walk.
 [[nodiscard]] LaneKernel lane_kernel(Traversal traversal, LaneMode mode, int leaf_width);

@@ -16,7 +16,7 @@
 namespace raykiln::render {
 namespace {
 
-constexpr std::size_t kStreamPaths = 4096;      ///< paths kept under way while there are so many
+constexpr std::size_t kStreamPaths = 2048;      ///< paths kept under way while there are so many
 constexpr std::size_t kMostBranchRays = 65536;  ///< rays of one bounce, all branches together
 constexpr std::size_t kManyRays = 1024;         ///< what a call into the tree should bring
 
