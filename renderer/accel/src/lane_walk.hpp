@@ -70,7 +70,8 @@ class LaneWalk {
   static constexpr std::size_t kBlockFloats = Leaf::kBlockFloats;
   static constexpr std::uint32_t kEntryBytes = sizeof(StackEntry);
   static constexpr std::uint64_t kStepsWorthIt = 12;  ///< of a ray with others
-  static constexpr std::uint64_t kFewNodes = 1024;  ///< of a tree that is best walked by sorted rays
+  /// Of a tree that is best walked by sorted rays.
+  static constexpr std::uint64_t kFewNodes = kAnyHit ? 16 * V::kWidth : 32;
   static constexpr std::uint32_t kEmptyLeaf = 1;  ///< nodes[1] of every tree
 
   void walk() {

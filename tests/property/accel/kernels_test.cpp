@@ -1,5 +1,7 @@
 // The lane kernels are the scalar walk: the same hits and the same counts, whatever else is in the
 // stream, at every scale a float can have.
+#include <algorithm>
+
 #include "same_counts.hpp"
 #include "support/accel_testing.hpp"
 
@@ -19,8 +21,10 @@ std::vector<TestMesh> meshes() {
   TestMesh doubled = coplanar_grid(6);
   doubled.append(soup(200, 5, 4.0F));
   doubled.append(doubled);
-  // The first two have more nodes than trees that sorted rays walk in packets to the end.
-  return {soup(2500, 1, 2.0F), terrain(40), soup(300, 2, 2.0F), slivers(150), hair(20, 8), doubled};
+  // For trees that all rays walk sorted, that only any-hit rays do, and that no cache need hold: see
+  // MeetEveryKindOfTree.
+  return {soup(2500, 1, 2.0F), terrain(40), soup(300, 2, 2.0F), slivers(150), hair(20, 8), doubled,
+          soup(40, 3, 2.0F), soup(60, 4, 2.0F), terrain(132)};
 }
 
 struct Answers {
@@ -76,6 +80,19 @@ void expect_brute_force_beyond(const render::KdTree& tree, const std::vector<Ray
     render::closest_hits(tree, rays, found, after, walk);
     EXPECT_EQ(count_differences(rays, found, beyond), 0U) << render::name(walk);
   }
+}
+
+// The walk does not depend on what it finds, but on the number of nodes: all its ways are to be taken here.
+TEST(Kernels, MeetEveryKindOfTree) {
+  std::vector<std::size_t> nodes;
+  for (const TestMesh& mesh : meshes()) nodes.push_back(build(mesh, {})->nodes.size());
+  const auto some = [&](std::size_t least, std::size_t most) {
+    return std::any_of(nodes.begin(), nodes.end(), [&](std::size_t n) { return n >= least && n <= most; });
+  };
+  EXPECT_TRUE(some(3, 32));
+  EXPECT_TRUE(some(33, 128));
+  EXPECT_TRUE(some(1024, 8192));
+  EXPECT_TRUE(some(16385, 100'000));
 }
 
 TEST(Kernels, CountWhatTheScalarWalkCounts) {
