@@ -39,7 +39,7 @@ class PacketWalk {
     }
     const auto* const nodes = static_cast<const Node*>(query_.nodes);
     while (n_walking_ + n_waiting_ != 0) {
-      const std::uint32_t due = n_waiting_;
+      std::uint32_t due = n_waiting_;
       std::uint32_t leaves = 0;  // the last packet's bit is the lowest
       const Walker* const end = walking_ + n_walking_;
       for (const Walker* walker = walking_; walker != end; ++walker) {
@@ -53,6 +53,7 @@ class PacketWalk {
         count_steps(*walker.packet);
         go_on(walker);
       }
+      if (at_once_) due = n_waiting_;
       for (std::uint32_t i = 0; i < due; ++i) visit_leaf(waiting_[i]);
       n_waiting_ -= due;
       for (std::uint32_t i = 0; i < n_waiting_; ++i) waiting_[i] = waiting_[due + i];
@@ -129,8 +130,9 @@ class PacketWalk {
         return;
       }
       if (node.word != 0) {
-        fetch_leaf<V, kBlockFloats>(query_.blocks + kBlockFloats * (node.place >> 2),
-                                    node.word);
+        if (!at_once_) {
+          fetch_leaf<V, kBlockFloats>(query_.blocks + kBlockFloats * (node.place >> 2), node.word);
+        }
         waiting_[n_waiting_++] = walker;
         return;
       }
@@ -236,6 +238,7 @@ class PacketWalk {
   const LaneQuery& query_;
   LaneCounts& counts_;
   const Leaf& leaf_;
+  const bool at_once_ = query_.node_count <= V::kCachedNodes;  ///< leaves do not wait
   std::int32_t least_credit_ = 0;
   std::uint32_t turn_ = 0;
   std::uint32_t n_walking_ = 0;
