@@ -84,6 +84,7 @@ class FastLeafVisit {
   static constexpr bool kMoreSlack = true;
   static constexpr bool kInDouble = false;
   static constexpr bool kHasEnds = false;
+  static constexpr bool kDecidesLater = false;
 
   FastLeafVisit(const LaneQuery& query, LaneCounts& counts) : query_(query), counts_(counts) {}
 

@@ -25,6 +25,14 @@ class LeafVisit {
   static constexpr bool kMoreSlack = false;
   static constexpr bool kInDouble = true;
   static constexpr bool kHasEnds = kAnyHit;  ///< LeafRays::end is looked at
+  /// Leaves of up to two blocks can be filtered first, for several rays, and decided later.
+  static constexpr bool kDecidesLater = !kAnyHit && Twice::kWidth == 2 * B::kWidth;
+  static constexpr std::uint32_t kMostFiltered = 2;  ///< blocks of a leaf
+
+  /// What the filter leaves of a block for the ray in `lane`.
+  struct Asked {
+    std::uint32_t lane, place, found;
+  };
 
   LeafVisit(const LaneQuery& query, LaneCounts& counts)
       : query_(query), counts_(counts), go_on_(kAnyHit && query.node_count <= kFewNodes ? 0 : ~0U) {}
@@ -35,6 +43,28 @@ class LeafVisit {
                                       std::uint32_t place, std::uint32_t count) const {
     if (count >= kMany) return many_blocks(rays, lane, index, place, count);
     return blocks_of_lane(rays, lane, index, place, count);
+  }
+
+  /// Filters a leaf of kMostFiltered blocks or fewer for the ray in `lane`; says in how many blocks there is
+  /// something to decide, and in `asked` what. Without a branch on what is found.
+  [[gnu::noinline]] std::uint32_t filter(const Rays& rays, std::uint32_t lane, std::uint32_t place,
+                                         std::uint32_t count, Asked* asked) const {
+    counts_.block_tests += count;
+    const float* const block = query_.blocks + kBlockFloats * place;
+    if (count == 1) {
+      const std::uint32_t found = candidates<B, false>(filter_ray<B>(rays, lane), block, rays, lane).maybe;
+      asked[0] = {lane, place, found};
+      return found != 0 ? 1 : 0;
+    }
+    const std::uint32_t found = candidates<Twice, false>(filter_ray<Twice>(rays, lane), block, rays, lane).maybe;
+    asked[0] = {lane, place, found & 0xFFU};
+    const std::uint32_t n = (found & 0xFFU) != 0 ? 1 : 0;
+    asked[n] = {lane, place + 1, found >> 8};
+    return n + (found >> 8 != 0 ? 1 : 0);
+  }
+
+  void decide(Rays& rays, const Asked& asked, std::size_t index) const {
+    decide_found(rays, asked.lane, index, asked.place, asked.found);
   }
 
   /// The rays of `lanes`, all with the same main axis. A bit for each that is done.

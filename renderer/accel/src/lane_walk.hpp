@@ -190,15 +190,47 @@ class LaneWalk {
       group.waiting = filled;
       prefetch_blocks(group);
     }
-    for (std::uint32_t rest = due; rest != 0; rest &= rest - 1) {
-      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    if constexpr (Leaf::kDecidesLater) {
+      if (at_once_) {
+        visit_leaves(group, due);
+        go_on(group, leaves);
+        return;
+      }
+    }
+    visit_and_go_on(group, due);
+    go_on(group, leaves & ~filled);
+    if (!at_once_) V::prefetch_nodes(query_.nodes, group.node);
+  }
+
+  // One lane after the other: what is left of a leaf is decided while the next one is begun.
+  [[gnu::always_inline]] void visit_and_go_on(Group& group, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
       if (visit_leaf(group, lane) || !pop(group, lane)) take_ray(group, lane);
     }
-    for (std::uint32_t rest = leaves & ~found.filled; rest != 0; rest &= rest - 1) {
-      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+  }
+
+  // All leaves are filtered before any is decided.
+  [[gnu::always_inline]] void visit_leaves(Group& group, std::uint32_t lanes) {
+    typename Leaf::Asked asked[2 * V::kWidth + 1];
+    std::uint32_t n = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
+      const std::uint32_t count = group.leaf_count[lane];
+      if (count <= Leaf::kMostFiltered) {
+        n += leaf_.filter(group, lane, group.leaf_place[lane], count, asked + n);
+      } else {
+        visit_leaf(group, lane);
+      }
+    }
+    for (std::uint32_t i = 0; i < n; ++i) leaf_.decide(group, asked[i], group.ray[asked[i].lane]);
+  }
+
+  [[gnu::always_inline]] void go_on(Group& group, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
       if (!pop(group, lane)) take_ray(group, lane);
     }
-    if (!at_once_) V::prefetch_nodes(query_.nodes, group.node);
   }
 
   [[gnu::always_inline]] void prefetch_blocks(const Group& group) const {
