@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "checks.hpp"
+#include "raykiln/scene/disjoint_sets.hpp"
 
 namespace raykiln::render {
 namespace {
@@ -40,19 +41,6 @@ std::vector<std::uint32_t> joined_corners(const std::vector<Vec3f>& positions) {
   }
   return joined;
 }
-
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t find(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// The refracting surface of one material.
 class Glass {
@@ -109,7 +97,7 @@ class Glass {
     };
     std::map<std::uint32_t, Body> bodies;
     for (std::uint32_t k = 0; k < ids_.size(); ++k) {
-      const std::uint32_t root = bodies_.find(k);
+      const std::uint32_t root = bodies_.root(k);
       const Vec3d about(mesh_.positions[mesh_.triangles[ids_[root]][0]]);
       const auto& corner = mesh_.triangles[ids_[k]];
       const auto at = [&](std::size_t i) { return Vec3d(mesh_.positions[corner[i]]) - about; };
@@ -122,7 +110,7 @@ class Glass {
 
   const TriangleMesh& mesh_;
   std::vector<std::uint32_t> ids_;  ///< of the triangles
-  Sets bodies_;                     ///< connected over edges; by place in ids_
+  DisjointSets bodies_;                     ///< connected over edges; by place in ids_
   std::vector<bool> flawed_;        ///< has an edge that is not between two triangles wound alike
 };
 

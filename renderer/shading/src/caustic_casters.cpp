@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "raykiln/scene/disjoint_sets.hpp"
+
 namespace raykiln::render {
 namespace {
 
@@ -14,24 +16,6 @@ constexpr double kSharpRoughness = 0.1;  ///< alpha 0.01
 constexpr double kLeastShare = 0.5;      ///< of the light that the surface meets
 
 double largest_channel(const Rgb& c) { return static_cast<double>(std::max({c.x, c.y, c.z})); }
-
-/// Who belongs together, by a forest whose roots are the smallest of each tree.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 std::vector<std::uint32_t> triangles_that_cast(const Scene& scene) {
   std::vector<std::uint32_t> found;
@@ -55,7 +39,7 @@ std::vector<std::uint32_t> corners_of(const TriangleMesh& mesh, const std::vecto
 }
 
 /// Joins corners, by their number in the list, that lie in the same place.
-void join_places(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners, Sets& sets) {
+void join_places(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners, DisjointSets& sets) {
   std::vector<std::uint32_t> by_place(corners.size());
   std::iota(by_place.begin(), by_place.end(), 0U);
   const auto place = [&](std::uint32_t i) {
@@ -76,7 +60,7 @@ std::vector<std::uint32_t> bodies_of(const TriangleMesh& mesh, const std::vector
   const auto number_of = [&](std::uint32_t corner) {
     return static_cast<std::uint32_t>(std::lower_bound(corners.begin(), corners.end(), corner) - corners.begin());
   };
-  Sets sets(corners.size());
+  DisjointSets sets(corners.size());
   join_places(mesh, corners, sets);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto& c = mesh.triangles[triangles[i]];
